@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "common/gl/gpu_scene.hpp"
+#include "common/gl/object.hpp"
+#include "common/object_id.hpp"
+#include "common/view.hpp"
+
+namespace sightline::gl {
+
+/// A rectangle of an image, pixels from the lower left corner.
+struct PixelRect {
+  std::uint32_t x = 0;
+  std::uint32_t y = 0;
+  ImageSize size;
+};
+
+/// An image whose pixels hold object codes (R32UI), with its depth (32F) and stencil: no texture, light, blending,
+/// dithering or multisampling. control_view draws it to see, main_view to audit; both call this one class.
+///
+/// Every call draws into `rect` alone, the whole image by default. The rectangle is cut by the scissor test, so
+/// that vertices land on the same sub-pixel positions and a part equals that part of the whole, bit for bit.
+class ItemBuffer {
+ public:
+  explicit ItemBuffer(ImageSize size);
+
+  /// Clears, then draws the opaque layer of `ids` (ascending) as seen by `eye`.
+  DrawStats draw(GpuScene& scene, const Eye& eye, std::span<const ObjectId> ids,
+                 const std::optional<PixelRect>& rect = {});
+
+  /// Adds to `pixels[i]` the pixels in which blended object `ids[i]` has a fragment in front of the opaque depth.
+  /// Each pixel counts once an object. Call after draw, with the same eye and rectangle.
+  DrawStats count_blended(GpuScene& scene, const Eye& eye, std::span<const ObjectId> ids,
+                          std::span<std::uint32_t> pixels, const std::optional<PixelRect>& rect = {});
+
+  /// Sets to 1 each pixel of the mask (R8UI, see blended_mask) where any blended object of `ids` has a fragment
+  /// in front of the opaque depth, to 0 every other, and reads it: rows from the bottom.
+  void read_blended_mask(GpuScene& scene, const Eye& eye, std::span<const ObjectId> ids,
+                         std::vector<std::uint8_t>& mask);
+
+  /// Codes of `rect`, rows from the bottom; resized to its pixel count.
+  void read(std::vector<ItemCode>& codes, const std::optional<PixelRect>& rect = {}) const;
+
+  /// Binds the buffer and sets viewport, scissor and the depth convention, for passes of others that draw on it.
+  void bind(const std::optional<PixelRect>& rect = {}) const;
+
+  /// The same with no colour attachment, so that a pass may sample code_texture() while it tests against depth.
+  void bind_depth_only(const std::optional<PixelRect>& rect = {}) const;
+
+  [[nodiscard]] ImageSize size() const noexcept { return size_; }
+  [[nodiscard]] GLuint code_texture() const noexcept { return codes_.get(); }
+
+ private:
+  ImageSize size_;
+  TextureName codes_, depth_stencil_, mask_;
+  Framebuffer framebuffer_, depth_framebuffer_, mask_framebuffer_;
+  Program solid_, masked_, blended_count_, blended_mark_;
+  Buffer blended_counts_;
+  std::vector<std::uint32_t> zeros_;
+};
+
+/// The GLSL that the item-buffer passes share; for counters that draw the same geometry again.
+extern const char* const k_item_vertex_glsl_body;
+
+}  // namespace sightline::gl
