@@ -1,0 +1,137 @@
+#include <algorithm>
+
+#include "protocol/clean_text.hpp"
+#include "protocol/codec.hpp"
+#include "protocol/generated/sightline_generated.h"
+
+namespace sightline {
+namespace {
+
+using flatbuffers::FlatBufferBuilder;
+using flatbuffers::Offset;
+
+wire::Digest to_wire(const SceneDigest& digest) {
+  return wire::Digest(flatbuffers::span<const std::uint8_t, 16>(digest.data(), digest.size()));
+}
+
+wire::ImageSize to_wire(const ImageSize& size) {
+  return {size.width, size.height};
+}
+
+template <typename WireMatrix, std::size_t k_entry_count, typename Matrix>
+WireMatrix matrix_to_wire(const Matrix& matrix) {
+  double entries[k_entry_count];
+  std::size_t i = 0;
+  for (int column = 0; column < Matrix::length(); ++column) {
+    for (int row = 0; row < Matrix::col_type::length(); ++row) entries[i++] = matrix[column][row];
+  }
+  return WireMatrix(flatbuffers::span<const double, k_entry_count>(entries, k_entry_count));
+}
+
+wire::Eye to_wire(const Eye& eye) {
+  return {matrix_to_wire<wire::Matrix4, 16>(eye.camera_from_world),
+          matrix_to_wire<wire::Matrix4, 16>(eye.clip_from_camera)};
+}
+
+wire::Move to_wire(const ObjectMove& move) {
+  return {index_of(move.id), matrix_to_wire<wire::Matrix4x3, 12>(move.world_from_object)};
+}
+
+/// An empty text, list or size is left out: its field then reads as empty, and the frame is shorter.
+Offset<flatbuffers::String> text_to_wire(FlatBufferBuilder& builder, const std::string& text) {
+  if (text.empty()) return 0;
+  return builder.CreateString(clean_text(text));
+}
+
+template <typename WireStruct, typename Value>
+Offset<flatbuffers::Vector<const WireStruct*>> list_to_wire(FlatBufferBuilder& builder,
+                                                            const std::vector<Value>& values) {
+  if (values.empty()) return 0;
+  return builder.CreateVectorOfStructs<WireStruct>(
+      values.size(), [&](std::size_t i, WireStruct* place) { *place = to_wire(values[i]); });
+}
+
+Offset<void> body_to_wire(FlatBufferBuilder& builder, const Hello& message) {
+  const auto client_name = text_to_wire(builder, message.client_name);
+  const wire::Digest digest = to_wire(message.scene_digest);
+  return wire::CreateHello(builder, message.version, client_name, &digest).Union();
+}
+
+Offset<void> body_to_wire(FlatBufferBuilder& builder, const Welcome& message) {
+  const auto server_name = text_to_wire(builder, message.server_name);
+  const auto engine = text_to_wire(builder, message.engine);
+  const wire::ImageSize control_size = to_wire(message.control_size);
+  return wire::CreateWelcome(builder, message.version, message.session_id, server_name, engine,
+                             message.object_count, &control_size, message.filter_length,
+                             message.heartbeat_interval_s)
+      .Union();
+}
+
+Offset<void> body_to_wire(FlatBufferBuilder& builder, const Refusal& message) {
+  const auto text = text_to_wire(builder, message.text);
+  const wire::Digest digest = to_wire(message.server_scene_digest);
+  return wire::CreateRefusal(builder, static_cast<wire::Reason>(message.reason), text, message.server_version,
+                             &digest)
+      .Union();
+}
+
+Offset<void> body_to_wire(FlatBufferBuilder& builder, const ViewRequest& message) {
+  const auto eyes = list_to_wire<wire::Eye>(builder, message.eyes);
+  const auto moves = list_to_wire<wire::Move>(builder, message.moves);
+  const wire::ImageSize main_size = to_wire(message.main_size);
+  return wire::CreateViewRequest(builder, message.session_id, message.request_seq, message.for_time_s, eyes,
+                                 &main_size, message.rotation_error_rad, message.position_error_m,
+                                 message.acked_set_seq, message.reset_filter, moves)
+      .Union();
+}
+
+Offset<void> body_to_wire(FlatBufferBuilder& builder, const VisibleSetFrame& message) {
+  const auto bitmap = builder.CreateVector(message.bitmap);
+  const StageTimes& times = message.times;
+  const auto wire_times = wire::CreateStageTimes(builder, times.queue_s, times.cull_s, times.draw_s,
+                                                 times.count_s, times.filter_s, times.encode_s);
+  const wire::Digest digest = to_wire(message.scene_digest);
+  return wire::CreateVisibleSet(builder, message.session_id, message.set_seq, message.request_seq,
+                                message.for_time_s, &digest, message.base_seq, message.visible_count, bitmap,
+                                wire_times, message.drawn_objects)
+      .Union();
+}
+
+Offset<void> body_to_wire(FlatBufferBuilder& builder, const Ping& message) {
+  return wire::CreatePing(builder, message.nonce, message.time_s).Union();
+}
+
+Offset<void> body_to_wire(FlatBufferBuilder& builder, const Pong& message) {
+  return wire::CreatePong(builder, message.nonce, message.time_s).Union();
+}
+
+Offset<void> body_to_wire(FlatBufferBuilder& builder, const Goodbye& message) {
+  return wire::CreateGoodbye(builder, message.session_id).Union();
+}
+
+wire::Body type_of(const Message& message) {
+  struct Types {
+    wire::Body operator()(const Hello&) const { return wire::Body::Hello; }
+    wire::Body operator()(const Welcome&) const { return wire::Body::Welcome; }
+    wire::Body operator()(const Refusal&) const { return wire::Body::Refusal; }
+    wire::Body operator()(const ViewRequest&) const { return wire::Body::ViewRequest; }
+    wire::Body operator()(const VisibleSetFrame&) const { return wire::Body::VisibleSet; }
+    wire::Body operator()(const Ping&) const { return wire::Body::Ping; }
+    wire::Body operator()(const Pong&) const { return wire::Body::Pong; }
+    wire::Body operator()(const Goodbye&) const { return wire::Body::Goodbye; }
+  };
+  return std::visit(Types{}, message);
+}
+
+}  // namespace
+
+Bytes encode(const Message& message) {
+  FlatBufferBuilder builder;
+  const Offset<void> body =
+      std::visit([&](const auto& value) { return body_to_wire(builder, value); }, message);
+  wire::FinishEnvelopeBuffer(builder, wire::CreateEnvelope(builder, type_of(message), body));
+  const auto* begin = reinterpret_cast<const std::byte*>(builder.GetBufferPointer());
+  return Bytes(begin, begin + builder.GetSize());
+}
+
+}  // namespace sightline

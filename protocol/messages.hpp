@@ -1,0 +1,143 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <glm/mat4x3.hpp>
+
+#include "common/object_id.hpp"
+#include "common/scene_digest.hpp"
+#include "common/view.hpp"
+
+namespace sightline {
+
+/// The messages of the wire as plain values. docs/protocol.md is their specification.
+/// All times are seconds of the CLIENT's clock; the daemon hands them back and never compares clocks.
+
+inline constexpr std::uint16_t k_protocol_version = 1;
+
+/// Client to daemon, first message of a session.
+struct Hello {
+  std::uint16_t version = k_protocol_version;
+  std::string client_name;
+  SceneDigest scene_digest{};
+
+  bool operator==(const Hello&) const = default;
+};
+
+/// Daemon to client: the session is open.
+struct Welcome {
+  std::uint16_t version = k_protocol_version;
+  std::uint64_t session_id = 0;  ///< random, never 0
+  std::string server_name;
+  std::string engine;
+  std::uint32_t object_count = 0;
+  ImageSize control_size;
+  std::uint32_t filter_length = 1;  ///< N of the low-pass filter, frames
+  double heartbeat_interval_s = 1.0;
+
+  bool operator==(const Welcome&) const = default;
+};
+
+enum class RefusalReason : std::uint8_t {
+  version_mismatch = 1,
+  scene_mismatch = 2,
+  malformed = 3,   ///< a frame that does not verify; the text says what
+  no_session = 4,  ///< a request before a Hello, or of a session that was reaped: say Hello again
+  limit = 5,       ///< too many sessions, eyes, objects, bytes
+  shutting_down = 6
+};
+[[nodiscard]] const char* to_string(RefusalReason reason) noexcept;
+
+/// Daemon to client: no, and why. After version_mismatch, scene_mismatch and limit the session is closed.
+struct Refusal {
+  RefusalReason reason = RefusalReason::malformed;
+  std::string text;  ///< one line for a person
+  std::uint16_t server_version = k_protocol_version;
+  SceneDigest server_scene_digest{};
+
+  bool operator==(const Refusal&) const = default;
+};
+
+/// An object's new placement. Absolute, so applying it twice does no harm.
+struct ObjectMove {
+  ObjectId id{};
+  glm::dmat4x3 world_from_object{1.0};  ///< 4 columns of 3: rotation-scale-shear and translation, WORLD frame
+
+  bool operator==(const ObjectMove&) const = default;
+};
+
+/// Client to daemon: what will be visible from here?
+struct ViewRequest {
+  std::uint64_t session_id = 0;
+  std::uint64_t request_seq = 0;    ///< 1, 2, 3 ... within a session
+  double for_time_s = 0.0;          ///< when the pose is expected to hold
+  std::vector<Eye> eyes;            ///< 1 to k_max_eyes, world frame
+  ImageSize main_size;              ///< image the client draws, pixels; 0x0 when it does not say
+  double rotation_error_rad = 0.0;  ///< the pose may be off by this much: the daemon widens the field by it
+  double position_error_m = 0.0;    ///< likewise for the position; today's engines only record it
+  std::uint64_t acked_set_seq = 0;  ///< newest set held, base for a delta; 0 for none: send a keyframe
+  bool reset_filter = false;        ///< the camera jumped: older counts say nothing about this view
+  std::vector<ObjectMove> moves;    ///< every move since the last one acknowledged by a set
+
+  bool operator==(const ViewRequest&) const = default;
+};
+inline constexpr std::size_t k_max_eyes = 8;
+
+/// Times the daemon spent on one request, seconds, by stage.
+struct StageTimes {
+  double queue_s = 0.0;   ///< received to started
+  double cull_s = 0.0;    ///< view-frustum culling over the hierarchy
+  double draw_s = 0.0;    ///< item buffer drawn
+  double count_s = 0.0;   ///< read back and counted
+  double filter_s = 0.0;  ///< low-pass filter and threshold
+  double encode_s = 0.0;  ///< of the previous answer (this one's is not over when it is written)
+
+  bool operator==(const StageTimes&) const = default;
+};
+
+/// Daemon to client: the visible set as ascending object ids.
+/// On the wire either a keyframe (all ids) or a delta (the ids that differ from the set `base_seq`), a
+/// CRoaring portable bitmap either way; decode_visible_set turns it back given the base.
+struct VisibleSetFrame {
+  std::uint64_t session_id = 0;
+  std::uint64_t set_seq = 0;      ///< 1, 2, 3 ... within a session
+  std::uint64_t request_seq = 0;  ///< the request it answers
+  double for_time_s = 0.0;        ///< copied from the request
+  SceneDigest scene_digest{};
+  std::uint64_t base_seq = 0;        ///< 0: keyframe
+  std::uint32_t visible_count = 0;   ///< objects in the whole set, to check a delta by
+  std::vector<std::uint8_t> bitmap;  ///< CRoaring portable format, ids < object count of the scene
+  StageTimes times;
+  std::uint32_t drawn_objects = 0;  ///< objects the engine drew for it
+
+  bool operator==(const VisibleSetFrame&) const = default;
+};
+
+/// Either way: I am alive. A Pong copies the Ping's nonce and time.
+struct Ping {
+  std::uint64_t nonce = 0;
+  double time_s = 0.0;
+
+  bool operator==(const Ping&) const = default;
+};
+struct Pong {
+  std::uint64_t nonce = 0;
+  double time_s = 0.0;
+
+  bool operator==(const Pong&) const = default;
+};
+
+/// Client to daemon: close the session.
+struct Goodbye {
+  std::uint64_t session_id = 0;
+
+  bool operator==(const Goodbye&) const = default;
+};
+
+using Message = std::variant<Hello, Welcome, Refusal, ViewRequest, VisibleSetFrame, Ping, Pong, Goodbye>;
+
+}  // namespace sightline
