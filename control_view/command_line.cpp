@@ -1,0 +1,135 @@
+#include "control_view/command_line.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include <CLI/CLI.hpp>
+
+#include "common/error.hpp"
+#include "control_view/config.hpp"
+#include "control_view/version.hpp"
+
+namespace sightline {
+namespace {
+
+std::string dashed(std::string_view name) {
+  std::string text(name);
+  std::replace(text.begin(), text.end(), '_', '-');
+  return text;
+}
+
+/// `serve`: what was given on the command line is noted first and applied last, over preset and config file.
+struct ServeArguments {
+  std::string config;
+  std::string preset = "default";
+  std::string announce;
+  bool die_with_parent = false;
+  std::vector<std::pair<std::string_view, std::string>> given;
+
+  void declare(CLI::App& app) {
+    for (const OptionField& field : daemon_option_fields()) {
+      app.add_option_function<std::string>(
+          "--" + dashed(field.name),
+          [this, name = field.name](const std::string& text) { given.emplace_back(name, text); },
+          std::string(field.help));
+    }
+    app.add_option("--config", config, "TOML file of the same options, with _ for -");
+    app.add_option("--preset", preset, "avango (the paper's pipeline) or default");
+    app.add_option("--announce", announce, "file that gets the endpoint once it is served");
+    app.add_flag("--die-with-parent", die_with_parent, "stop when the process that started this one ends");
+  }
+
+  [[nodiscard]] ServeCommand command() const {
+    ServeCommand serve{preset_options(preset), die_with_parent};
+    if (!config.empty()) read_config(config, serve.options);
+    for (const auto& [name, text] : given) set_option(serve.options, name, text, "--" + dashed(name));
+    serve.options.announce = announce;
+    return serve;
+  }
+};
+
+struct BenchArguments {
+  BenchOptions options;
+  std::string size = "512x384";
+
+  void declare(CLI::App& app) {
+    app.add_option("--scene", options.scene, "scene file")->required();
+    app.add_option("--path", options.path, "camera path CSV")->required();
+    app.add_option("--json", options.json, "report file")->required();
+    app.add_option("--size", size, "control image, WxH pixels");
+    app.add_option("--engine", options.engines, "NAME or NAME:COUNTER, several with commas")->delimiter(',');
+    app.add_option("--counter", options.counter, "counter of the engines given without one");
+    app.add_option("--context", options.context, "osmesa, egl or glfw");
+    app.add_option("--rate", options.rate_hz, "views a second of the path")->check(CLI::Range(0.001, 1e6));
+    app.add_option("--frames", options.frames, "the first N views only");
+  }
+
+  [[nodiscard]] BenchOptions command(const std::vector<std::string>& arguments) {
+    const auto parsed = parse_image_size(size);
+    if (!parsed) {
+      throw InputError("--size must be WxH with sides from 1 to " + std::to_string(k_max_image_side) +
+                       ", not '" + size + "'");
+    }
+    options.size = *parsed;
+    options.command_line = arguments;
+    return options;
+  }
+};
+
+bool begins_with_a_command(const std::vector<std::string>& arguments) {
+  constexpr std::array<std::string_view, 8> k_first_words{"serve",  "engines", "bench", "ping",
+                                                          "keygen", "--help",  "-h",    "--version"};
+  return !arguments.empty() &&
+         std::find(k_first_words.begin(), k_first_words.end(), arguments.front()) != k_first_words.end();
+}
+
+std::string one_line(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text;
+}
+
+}  // namespace
+
+Command parse_command_line(const std::vector<std::string>& arguments) {
+  CLI::App app("Sightline's daemon: tells renderers which objects can be seen.", "control_view");
+  app.set_version_flag("--version", std::string("control_view ") + k_version);
+  app.require_subcommand(1);
+
+  ServeArguments serve_arguments;
+  CLI::App* const serve = app.add_subcommand("serve", "answer clients until stopped (the default)");
+  serve_arguments.declare(*serve);
+  CLI::App* const engines = app.add_subcommand("engines", "list the engines and counters of this build");
+  BenchArguments bench_arguments;
+  CLI::App* const bench = app.add_subcommand("bench", "time every engine on the same views");
+  bench_arguments.declare(*bench);
+  PingOptions ping_options;
+  CLI::App* const ping = app.add_subcommand("ping", "exit 0 when a daemon answers, 1 when none does");
+  ping->add_option("--connect", ping_options.endpoint, "endpoint")->required();
+  ping->add_option("--timeout", ping_options.timeout_s, "seconds")->check(CLI::Range(0.001, 3600.0));
+  ping->add_option("--keys", ping_options.keys, "CURVE key file with server_public_key");
+  KeygenCommand keygen_command;
+  CLI::App* const keygen = app.add_subcommand("keygen", "make a CURVE key pair");
+  keygen->add_option("--out", keygen_command.file, "key file to create")->required();
+
+  // CLI11 takes its arguments from the back.
+  std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());
+  if (!begins_with_a_command(arguments)) reversed.emplace_back("serve");
+  try {
+    app.parse(reversed);
+  } catch (const CLI::CallForVersion& version) {
+    return PrintCommand{std::string(version.what()) + "\n"};
+  } catch (const CLI::CallForHelp&) {
+    return PrintCommand{app.help()};
+  } catch (const CLI::ParseError& error) {
+    throw InputError(one_line(error.what()) + " (see control_view --help)");
+  }
+
+  if (engines->parsed()) return EnginesCommand{};
+  if (bench->parsed()) return bench_arguments.command(arguments);
+  if (ping->parsed()) return ping_options;
+  if (keygen->parsed()) return keygen_command;
+  return serve_arguments.command();
+}
+
+}  // namespace sightline

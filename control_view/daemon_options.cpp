@@ -1,0 +1,122 @@
+#include "control_view/daemon_options.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+
+#include "common/error.hpp"
+#include "common/gl/context.hpp"
+#include "control_view/low_pass_filter.hpp"
+
+namespace sightline {
+namespace {
+
+[[noreturn]] void must_be(const std::string& what, const std::string& text) {
+  throw InputError("must be " + what + ", not '" + text + "'");
+}
+
+template <class Number>
+Number parse_number(const std::string& text, Number lowest, Number highest, const std::string& what) {
+  Number value{};
+  const char* const end = text.data() + text.size();
+  const auto [stopped, error] = std::from_chars(text.data(), end, value);
+  // Not in range rather than out of range: the comparison is false for a NaN.
+  if (error != std::errc{} || stopped != end || !(value >= lowest && value <= highest)) must_be(what, text);
+  return value;
+}
+
+std::string not_empty(const std::string& text, const std::string& what) {
+  if (text.empty()) must_be(what, text);
+  return text;
+}
+
+std::string one_of(const std::string& text, std::initializer_list<std::string_view> words,
+                   const std::string& what) {
+  if (std::find(words.begin(), words.end(), text) == words.end()) must_be(what, text);
+  return text;
+}
+
+using Kind = OptionField::Kind;
+using Options = DaemonOptions;
+using Text = const std::string&;
+
+constexpr std::array<OptionField, 14> k_fields{{
+    {"bind", Kind::text, "endpoint, tcp://HOST:PORT (* for any free port) or ipc://PATH",
+     [](Options& o, Text t) { o.bind = not_empty(t, "a tcp:// or ipc:// endpoint"); }},
+    {"scene", Kind::text, "scene file", [](Options& o, Text t) { o.scene = not_empty(t, "a scene file"); }},
+    {"size", Kind::text, "control image, WxH pixels",
+     [](Options& o, Text t) {
+       const auto size = parse_image_size(t);
+       if (!size) must_be("WxH with sides from 1 to " + std::to_string(k_max_image_side), t);
+       o.size = *size;
+     }},
+    {"engine", Kind::text, "visibility engine, see `control_view engines`",
+     [](Options& o, Text t) { o.engine.engine = not_empty(t, "an engine"); }},
+    {"counter", Kind::text, "how the engine counts pixels",
+     [](Options& o, Text t) { o.engine.counter = not_empty(t, "a counter"); }},
+    {"filter", Kind::integer, "answers the low-pass filter averages, 1 for none",
+     [](Options& o, Text t) {
+       o.filter = parse_number<std::uint32_t>(t, 1, LowPassFilter::k_max_length, "a number from 1 to 1024");
+     }},
+    {"threshold", Kind::number, "mean pixels above which an object counts as visible",
+     [](Options& o, Text t) {
+       o.threshold = parse_number<double>(t, 0.0, 1e9, "a number of pixels from 0");
+     }},
+    {"context", Kind::text, "osmesa, egl or glfw",
+     [](Options& o, Text t) {
+       o.engine.context = one_of(t, {"osmesa", "egl", "glfw"}, "osmesa, egl or glfw");
+     }},
+    {"refine", Kind::on_off, "sweep the main image while the camera stands still, on or off",
+     [](Options& o, Text t) {
+       o.refine = one_of(t, {"on", "off"}, "on or off") == "on";
+     }},
+    {"max_sessions", Kind::integer, "clients at a time",
+     [](Options& o, Text t) {
+       o.max_sessions = parse_number<std::uint32_t>(t, 1, 1024, "a number from 1 to 1024");
+     }},
+    {"control_rate", Kind::number, "answers a second at most, 0 for no limit",
+     [](Options& o, Text t) {
+       o.control_rate_hz = parse_number<double>(t, 0.0, 1e6, "a rate in Hz from 0");
+     }},
+    {"silence_limit", Kind::number, "seconds without a word after which a session is closed",
+     [](Options& o, Text t) {
+       o.silence_limit_s = parse_number<double>(t, 0.1, 86400.0, "seconds from 0.1 to 86400");
+     }},
+    {"keys", Kind::text, "CURVE key file: encrypt, see `control_view keygen`",
+     [](Options& o, Text t) { o.keys = not_empty(t, "a key file"); }},
+    {"log", Kind::text, "what goes to stderr: error, warn, info or debug",
+     [](Options& o, Text t) {
+       o.log = one_of(t, {"error", "warn", "info", "debug"}, "error, warn, info or debug");
+     }},
+}};
+
+}  // namespace
+
+std::span<const OptionField> daemon_option_fields() {
+  return k_fields;
+}
+
+void set_option(DaemonOptions& options, std::string_view name, const std::string& text,
+                const std::string& where) {
+  const auto field = std::find_if(k_fields.begin(), k_fields.end(),
+                                  [&](const OptionField& candidate) { return candidate.name == name; });
+  if (field == k_fields.end()) throw InputError(where + ": unknown key '" + std::string(name) + "'");
+  try {
+    field->set(options, text);
+  } catch (const InputError& error) {
+    throw InputError(where + ": " + std::string(name) + " " + error.what());
+  }
+}
+
+DaemonOptions preset_options(std::string_view name) {
+  DaemonOptions options;
+  if (name == "default") return options;
+  if (name == "avango") {
+    options.refine = false;
+    return options;
+  }
+  throw InputError("--preset must be avango or default, not '" + std::string(name) + "'");
+}
+
+}  // namespace sightline

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "common/view.hpp"
+#include "control_view/engine.hpp"
+
+namespace sightline {
+
+/// Everything `control_view serve` can be told.
+struct DaemonOptions {
+  std::string bind = "tcp://127.0.0.1:5571";
+  std::string scene;
+  ImageSize size{512, 384};
+  EngineOptions engine;
+  std::uint32_t filter = 8;  ///< answers the low-pass filter averages
+  double threshold = 0.0;    ///< pixels of the control image, mean
+  bool refine = true;        ///< sweep the main image while the camera stands still
+  std::uint32_t max_sessions = 16;
+  double control_rate_hz = 0.0;  ///< answers a second at most, 0: no limit
+  double silence_limit_s = 5.0;
+  std::string keys;      ///< CURVE key file; empty: no encryption
+  std::string announce;  ///< file the bound endpoint is written to when ready
+  std::string log = "info";
+};
+
+/// One option by its name, the same in a config file (with '_') and on the command line (with '-').
+struct OptionField {
+  enum class Kind { text, integer, number, on_off };
+  std::string_view name;  ///< with '_'
+  Kind kind;
+  std::string_view help;
+  /// Reads and checks the text. Throws InputError that says what the value must be.
+  void (*set)(DaemonOptions& options, const std::string& text);
+};
+
+[[nodiscard]] std::span<const OptionField> daemon_option_fields();
+
+/// Sets one option. Throws InputError that begins with `where` (a file or the command line) and names the
+/// field.
+void set_option(DaemonOptions& options, std::string_view name, const std::string& text,
+                const std::string& where);
+
+/// Settings that belong together: "default", or "avango" for the paper's pipeline as it is (no still-view
+/// sweep). Throws InputError for another name.
+[[nodiscard]] DaemonOptions preset_options(std::string_view name);
+
+}  // namespace sightline

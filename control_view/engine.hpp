@@ -1,0 +1,96 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/object_id.hpp"
+#include "common/scene/scene.hpp"
+#include "common/view.hpp"
+#include "protocol/messages.hpp"
+
+namespace sightline {
+
+/// Visible pixels per object, sparse: `ids` ascending, `pixels[i]` > 0 belongs to `ids[i]`.
+/// Over several eyes the pixels are added up. A pixel counts for an opaque object that owns it in the item
+/// buffer, and for every blended object with a fragment in front of the opaque depth there.
+struct PixelCounts {
+  std::vector<ObjectId> ids;
+  std::vector<std::uint32_t> pixels;
+
+  void clear() noexcept {
+    ids.clear();
+    pixels.clear();
+  }
+  bool operator==(const PixelCounts&) const = default;
+};
+
+/// A rectangle of a larger image, pixels from its lower left corner: what is drawn equals that part of the
+/// whole `image`, bit for bit.
+struct ImageWindow {
+  ImageSize image;
+  std::uint32_t x = 0;
+  std::uint32_t y = 0;
+};
+
+/// One question to an engine.
+struct ViewQuery {
+  std::span<const Eye> eyes;          ///< world frame, already widened
+  ImageSize size;                     ///< of the item buffer, pixels per eye
+  std::optional<ImageWindow> window;  ///< draw just this part, `size` large, of a larger image
+};
+
+/// What one answer cost and what it drew.
+struct EngineStats {
+  double cull_s = 0.0;
+  double draw_s = 0.0;
+  double count_s = 0.0;
+  std::uint32_t drawn_objects = 0;  ///< summed over eyes
+  std::uint64_t drawn_triangles = 0;
+};
+
+/// Moved objects of one session, absolute, world frame. An engine that serves several sessions is handed the
+/// whole list of the session at hand; `version` changes whenever the list does, and 0 is "nothing moved".
+struct SceneEdits {
+  std::uint64_t owner = 0;  ///< session
+  std::uint64_t version = 0;
+  std::vector<ObjectMove> moves;  ///< one an object at most, ascending ids
+};
+
+/// Turns (scene state, eyes, resolution) into a count of visible pixels per object.
+/// Not thread-safe: it lives on the thread that made it, with that thread's GL context.
+class VisibilityEngine {
+ public:
+  virtual ~VisibilityEngine() = default;
+  /// Makes the scene's objects stand where `edits` says, and every other one where the file has it.
+  virtual void apply(const SceneEdits& edits) = 0;
+  /// Replaces `counts`. Throws MachineError when the GL context is lost.
+  virtual EngineStats count(const ViewQuery& query, PixelCounts& counts) = 0;
+};
+
+struct EngineOptions {
+  std::string engine = "item_buffer";
+  std::string counter = "histogram";
+  std::string context = "osmesa";  ///< osmesa, egl or glfw
+};
+
+/// An engine this build has.
+struct EngineEntry {
+  std::string_view name;
+  std::vector<std::string_view> counters;  ///< first is the default; empty when it has no choice
+  std::function<std::unique_ptr<VisibilityEngine>(const Scene&, const EngineOptions&)> make;
+};
+
+/// All of them, in the order `control_view engines` prints. Adding one is one line in engine_registry.cpp.
+[[nodiscard]] std::span<const EngineEntry> engine_registry();
+
+/// Throws InputError for a name that is not in the registry (the text lists those that are), MachineError
+/// when its context cannot be had.
+[[nodiscard]] std::unique_ptr<VisibilityEngine> make_engine(const Scene& scene, const EngineOptions& options);
+
+}  // namespace sightline

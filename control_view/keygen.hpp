@@ -1,0 +1,12 @@
+#pragma once
+
+#include <string>
+
+namespace sightline {
+
+/// Writes a new CURVE key pair to a TOML key file that only its owner may read, and prints the public key.
+/// Never writes over a file. Throws InputError naming the file, MachineError where ZeroMQ was built without
+/// CURVE.
+void write_new_keys(const std::string& file);
+
+}  // namespace sightline

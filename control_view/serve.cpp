@@ -1,0 +1,133 @@
+#include "control_view/serve.hpp"
+
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string_view>
+#include <thread>
+
+#include <malloc.h>
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include "common/error.hpp"
+#include "common/scene/load_scene.hpp"
+#include "control_view/find_engine.hpp"
+#include "control_view/service.hpp"
+#include "control_view/stop_signal.hpp"
+#include "control_view/write_file.hpp"
+
+namespace sightline {
+namespace {
+
+/// Short, so that a signal is noticed well within a tenth of a second.
+constexpr std::chrono::milliseconds k_longest_wait{25};
+
+void log_to_stderr(const std::string& level) {
+  auto logger = spdlog::stderr_logger_st("control_view");
+  logger->set_pattern("%Y-%m-%d %H:%M:%S.%e control_view %l: %v");
+  logger->set_level(spdlog::level::from_str(level));
+  spdlog::set_default_logger(std::move(logger));
+}
+
+LinkOptions link_options(const DaemonOptions& options) {
+  LinkOptions link;
+  if (!options.keys.empty()) link.curve = read_curve_keys(options.keys);
+  return link;
+}
+
+ServiceOptions service_options(const DaemonOptions& options) {
+  ServiceOptions service;
+  service.pipeline = {options.size, options.filter, options.threshold, options.refine};
+  service.engine_name = options.engine.engine + "/" + options.engine.counter;
+  service.max_sessions = options.max_sessions;
+  service.silence_limit_s = options.silence_limit_s;
+  service.answer_rate_hz = options.control_rate_hz;
+  return service;
+}
+
+struct Served {
+  SceneIdentity scene;
+  std::unique_ptr<VisibilityEngine> engine;
+};
+
+/// Loads the scene and hands it to the engine. The arrays die here: from now on the geometry is the engine's.
+Served make_served(const DaemonOptions& options) {
+  Served served;
+  {
+    const Scene scene = load_scene(options.scene, {.shading = false});
+    served.scene = {scene.digest, scene.object_count()};
+    served.engine = make_engine(scene, options.engine);
+  }
+  malloc_trim(0);
+  return served;
+}
+
+/// The endpoint in a file, for as long as it is served.
+class Announcement {
+ public:
+  Announcement(std::string file, const std::string& endpoint) : file_(std::move(file)) {
+    if (!file_.empty()) write_file(file_, endpoint + "\n");
+  }
+  ~Announcement() {
+    std::error_code ignored;
+    if (!file_.empty()) std::filesystem::remove(file_, ignored);
+  }
+  Announcement(const Announcement&) = delete;
+  Announcement& operator=(const Announcement&) = delete;
+
+ private:
+  std::string file_;
+};
+
+void remove_socket_file(const std::string& endpoint) {
+  constexpr std::string_view k_scheme = "ipc://";
+  std::error_code ignored;
+  if (endpoint.starts_with(k_scheme)) std::filesystem::remove(endpoint.substr(k_scheme.size()), ignored);
+}
+
+/// Runs the service until a signal; everything that needs the link is gone when it returns.
+void serve_on(const std::string& endpoint, ServerLink& link, Served& served, const DaemonOptions& options,
+              const StopSignal& stop) {
+  Service service(link, *served.engine, served.scene, service_options(options), steady_clock());
+  const Announcement announcement(options.announce, endpoint);
+  std::printf("control_view: listening on %s\n", endpoint.c_str());
+  std::fflush(stdout);
+  spdlog::info("serving {} ({} objects, digest {})", options.scene, served.scene.object_count,
+               to_hex(served.scene.digest));
+
+  while (!stop.requested()) service.step(k_longest_wait);
+
+  service.shut_down();
+  // The link drops what it has not sent when it closes.
+  std::this_thread::sleep_for(std::chrono::milliseconds{10});
+  const ServiceCounters& counters = service.counters();
+  spdlog::info("stopped: {} answered, {} superseded, {} malformed, {} sessions opened, {} reaped",
+               counters.answered, counters.superseded, counters.malformed, counters.opened, counters.reaped);
+}
+
+}  // namespace
+
+void serve(const DaemonOptions& options) {
+  StopSignal stop;
+  log_to_stderr(options.log);
+  if (options.scene.empty())
+    throw InputError("no scene given: use --scene FILE or `scene` in the config file");
+  (void)find_engine(options.engine);
+
+  // Checked before the scene is loaded, which may take long: keys and endpoint.
+  const LinkOptions link_settings = link_options(options);
+  std::optional<ServerLink> link;
+  link.emplace(options.bind, link_settings);
+  const std::string endpoint = link->bound_endpoint();
+
+  Served served = make_served(options);
+  stop.defer();
+  serve_on(endpoint, *link, served, options, stop);
+  link.reset();
+  remove_socket_file(endpoint);
+}
+
+}  // namespace sightline

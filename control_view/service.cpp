@@ -1,0 +1,180 @@
+#include "control_view/service.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <utility>
+#include <variant>
+
+#include <spdlog/spdlog.h>
+
+#include "common/error.hpp"
+#include "protocol/codec.hpp"
+
+namespace sightline {
+namespace {
+
+/// Frames read in one step at most, so that a peer that floods the link cannot keep the others from their
+/// answers.
+constexpr int k_frames_a_step = 256;
+
+}  // namespace
+
+Service::Service(ServerLink& link, VisibilityEngine& engine, SceneIdentity scene, ServiceOptions options,
+                 Clock clock)
+    : link_(link),
+      engine_(engine),
+      scene_(scene),
+      options_(std::move(options)),
+      clock_(std::move(clock)),
+      sessions_(options_.max_sessions) {}
+
+void Service::step(std::chrono::milliseconds timeout) {
+  drain(timeout);
+  counters_.reaped += sessions_.close_silent(clock_() - options_.silence_limit_s);
+  if (!may_answer_now()) return;
+  if (Session* session = sessions_.next_pending()) answer(*session);
+}
+
+void Service::drain(std::chrono::milliseconds timeout) {
+  auto incoming = link_.receive(wait_time(timeout));
+  for (int frame = 0; incoming; ++frame) {
+    receive(*incoming);
+    if (frame + 1 == k_frames_a_step) return;
+    incoming = link_.receive(std::chrono::milliseconds{0});
+  }
+}
+
+void Service::answer(Session& session) {
+  const double began_s = clock_();
+  if (options_.answer_rate_hz > 0.0) {
+    // Counted from when it was due, or the loop's rounding up would make every interval longer.
+    const double period_s = 1.0 / options_.answer_rate_hz;
+    const bool long_overdue = began_s - next_answer_s_ > period_s;
+    next_answer_s_ = (long_overdue ? began_s : next_answer_s_) + period_s;
+  }
+  const PeerId peer = session.peer();
+  try {
+    const Message frame = session.answer(engine_, scene_.digest, began_s);
+    const double encode_began_s = clock_();
+    send(peer, frame);
+    session.note_encode_time(clock_() - encode_began_s);
+    ++counters_.answered;
+  } catch (const MachineError&) {
+    throw;  // the engine is lost, and with it every session
+  } catch (const std::exception& error) {
+    spdlog::error("session closed, its request could not be answered: {}", error.what());
+    sessions_.close(session);
+    refuse(peer, RefusalReason::limit, "the request could not be answered");
+  }
+}
+
+bool Service::may_answer_now() const {
+  return options_.answer_rate_hz <= 0.0 || clock_() >= next_answer_s_;
+}
+
+std::chrono::milliseconds Service::wait_time(std::chrono::milliseconds timeout) const {
+  if (!sessions_.any_pending()) return timeout;
+  if (options_.answer_rate_hz <= 0.0) return std::chrono::milliseconds{0};
+  const double wait_ms = std::clamp(std::ceil((next_answer_s_ - clock_()) * 1e3), 0.0, 1e6);
+  return std::min(timeout, std::chrono::milliseconds{static_cast<std::int64_t>(wait_ms)});
+}
+
+void Service::shut_down() {
+  while (sessions_.size() > 0) {
+    const Session& session = *sessions_.sessions().back();
+    refuse(session.peer(), RefusalReason::shutting_down, "the daemon was stopped");
+    sessions_.close(session);
+  }
+}
+
+void Service::receive(const ServerLink::Incoming& incoming) {
+  auto decoded = decode(incoming.frame);
+  if (const auto* error = std::get_if<DecodeError>(&decoded)) {
+    refuse_malformed(incoming.peer, error->reason);
+    return;
+  }
+  if (Session* session = sessions_.of_peer(incoming.peer)) session->heard(clock_());
+  std::visit([&](auto&& message) { handle(incoming.peer, std::move(message)); },
+             std::get<Message>(std::move(decoded)));
+}
+
+void Service::handle(const PeerId& peer, Hello&& hello) {
+  if (hello.version != k_protocol_version) {
+    return refuse(peer, RefusalReason::version_mismatch,
+                  fmt::format("this daemon speaks version {}, not {}", k_protocol_version, hello.version));
+  }
+  if (hello.scene_digest != scene_.digest) {
+    return refuse(peer, RefusalReason::scene_mismatch,
+                  fmt::format("this daemon serves scene {}, not {}", to_hex(scene_.digest),
+                              to_hex(hello.scene_digest)));
+  }
+  const Session* session =
+      sessions_.open(peer, hello.client_name, VisibilityPipeline(options_.pipeline, clock_), clock_());
+  if (session == nullptr) {
+    return refuse(peer, RefusalReason::limit,
+                  fmt::format("all {} sessions of this daemon are taken", sessions_.capacity()));
+  }
+  ++counters_.opened;
+  if (log_limit_.take("opened", clock_())) {
+    spdlog::info("session opened ({} of {} in use)", sessions_.size(), sessions_.capacity());
+  }
+
+  Welcome welcome;
+  welcome.session_id = session->id();
+  welcome.server_name = "control_view";
+  welcome.engine = options_.engine_name;
+  welcome.object_count = scene_.object_count;
+  welcome.control_size = options_.pipeline.size;
+  welcome.filter_length = options_.pipeline.filter_length;
+  welcome.heartbeat_interval_s = options_.heartbeat_interval_s;
+  send(peer, welcome);
+}
+
+void Service::handle(const PeerId& peer, ViewRequest&& request) {
+  Session* session = sessions_.of_peer(peer);
+  if (session == nullptr || session->id() != request.session_id) {
+    return refuse(peer, RefusalReason::no_session, "no such session of this peer: say Hello first");
+  }
+  const auto in_scene = [&](const ObjectMove& move) { return index_of(move.id) < scene_.object_count; };
+  if (!std::all_of(request.moves.begin(), request.moves.end(), in_scene)) {
+    return refuse_malformed(peer, "a moved object is not in the scene");
+  }
+  if (session->accept(std::move(request), clock_())) ++counters_.superseded;
+}
+
+void Service::handle(const PeerId& peer, Ping&& ping) {
+  send(peer, Pong{ping.nonce, ping.time_s});
+}
+
+void Service::handle(const PeerId&, Pong&&) {}
+
+void Service::handle(const PeerId& peer, Goodbye&& goodbye) {
+  const Session* session = sessions_.of_peer(peer);
+  if (session != nullptr && session->id() == goodbye.session_id) sessions_.close(*session);
+}
+
+template <class DaemonMessage>
+void Service::handle(const PeerId& peer, DaemonMessage&&) {
+  refuse_malformed(peer, "a message that only a daemon sends");
+}
+
+void Service::refuse(const PeerId& peer, RefusalReason reason, const std::string& text) {
+  ++counters_.refused;
+  send(peer, Refusal{reason, text, k_protocol_version, scene_.digest});
+}
+
+void Service::refuse_malformed(const PeerId& peer, const std::string& why) {
+  ++counters_.malformed;
+  const double now_s = clock_();
+  if (log_limit_.take("malformed", now_s)) {
+    spdlog::warn("malformed frame: {} ({} so far)", why, counters_.malformed);
+  }
+  if (refusal_limit_.take(peer, now_s)) refuse(peer, RefusalReason::malformed, why);
+}
+
+void Service::send(const PeerId& peer, const Message& message) {
+  if (!link_.send(peer, encode(message))) ++counters_.unsent;
+}
+
+}  // namespace sightline

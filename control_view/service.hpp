@@ -1,0 +1,94 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+
+#include "control_view/clock.hpp"
+#include "control_view/engine.hpp"
+#include "control_view/rate_limit.hpp"
+#include "control_view/session_table.hpp"
+#include "control_view/visibility_pipeline.hpp"
+#include "protocol/endpoint_link.hpp"
+#include "protocol/messages.hpp"
+
+namespace sightline {
+
+/// What the service must know of the scene: its geometry is the engine's.
+struct SceneIdentity {
+  SceneDigest digest{};
+  std::uint32_t object_count = 0;
+};
+
+struct ServiceOptions {
+  PipelineOptions pipeline;
+  std::string engine_name = "item_buffer";
+  std::uint32_t max_sessions = 16;
+  double heartbeat_interval_s = 1.0;  ///< told to the clients: how often at least to be heard of
+  double silence_limit_s = 5.0;       ///< a session not heard of for longer is closed
+  double answer_rate_hz = 0.0;  ///< at most so many answers a second, all sessions together; 0: no limit
+};
+
+/// Running totals, for logs and tests.
+struct ServiceCounters {
+  std::uint64_t answered = 0;
+  std::uint64_t superseded = 0;  ///< requests that a newer one of the same session replaced
+  std::uint64_t malformed = 0;   ///< frames that no message could be made of
+  std::uint64_t refused = 0;     ///< Refusals sent
+  std::uint64_t opened = 0;      ///< sessions
+  std::uint64_t reaped = 0;      ///< sessions closed for their silence
+  std::uint64_t unsent = 0;      ///< frames whose peer was gone or did not read
+};
+
+/// The daemon between its link and its engine. One thread; `step` is the loop's body.
+///
+/// A peer's bytes never throw. What leaves step() is a MachineError of the engine, which nobody can serve
+/// without.
+class Service {
+ public:
+  Service(ServerLink& link, VisibilityEngine& engine, SceneIdentity scene, ServiceOptions options,
+          Clock clock);
+
+  /// Reads what has come in, waiting for at most `timeout` when there is nothing to do, then answers the
+  /// newest request of the session whose turn it is.
+  void step(std::chrono::milliseconds timeout);
+
+  /// Tells every session that the daemon goes, and closes it.
+  void shut_down();
+
+  [[nodiscard]] const ServiceCounters& counters() const noexcept { return counters_; }
+  [[nodiscard]] std::size_t session_count() const noexcept { return sessions_.size(); }
+
+ private:
+  void drain(std::chrono::milliseconds timeout);
+  void answer(Session& session);
+  [[nodiscard]] bool may_answer_now() const;
+  [[nodiscard]] std::chrono::milliseconds wait_time(std::chrono::milliseconds timeout) const;
+
+  void receive(const ServerLink::Incoming& incoming);
+  void handle(const PeerId& peer, Hello&& hello);
+  void handle(const PeerId& peer, ViewRequest&& request);
+  void handle(const PeerId& peer, Ping&& ping);
+  void handle(const PeerId& peer, Pong&& pong);
+  void handle(const PeerId& peer, Goodbye&& goodbye);
+  /// Messages that only a daemon sends.
+  template <class DaemonMessage>
+  void handle(const PeerId& peer, DaemonMessage&& message);
+
+  void refuse(const PeerId& peer, RefusalReason reason, const std::string& text);
+  void refuse_malformed(const PeerId& peer, const std::string& why);
+  void send(const PeerId& peer, const Message& message);
+
+  ServerLink& link_;
+  VisibilityEngine& engine_;
+  SceneIdentity scene_;
+  ServiceOptions options_;
+  Clock clock_;
+  SessionTable sessions_;
+  ServiceCounters counters_;
+  RateLimit refusal_limit_{1.0};
+  RateLimit log_limit_{1.0};
+  double next_answer_s_ = 0.0;
+};
+
+}  // namespace sightline

@@ -1,0 +1,11 @@
+#pragma once
+
+#include <string>
+
+namespace sightline {
+
+/// Writes a whole file or none: to a temporary beside it, which then takes its name.
+/// Throws InputError naming the file when that cannot be done.
+void write_file(const std::string& file, const std::string& text);
+
+}  // namespace sightline
