@@ -1,0 +1,21 @@
+#pragma once
+
+#include <filesystem>
+
+#include "main_view/app/common_options.hpp"
+
+namespace sightline {
+
+/// `main_view audit`: replays a camera path on a virtual clock through both real processes and counts wrong
+/// pixels. service.control_rate_hz is the most requests a virtual second that the daemon starts (30 when
+/// empty).
+struct AuditOptions {
+  SceneOptions scene;
+  ReplayOptions replay;
+  ServiceOptions service;
+  double latency_ms = 50.0;    ///< virtual time from request to answer
+  bool still = false;          ///< keeps the camera where it is at replay.start_s
+  std::filesystem::path json;  ///< report; standard output has the summary either way
+};
+
+}  // namespace sightline

@@ -1,0 +1,42 @@
+#include "main_view/app/draw_list.hpp"
+
+#include <algorithm>
+#include <iterator>
+
+#include <glm/gtc/matrix_transform.hpp>
+
+namespace sightline {
+
+const std::vector<ObjectId>& DrawListBuilder::in_frustum(std::span<const Eye> eyes) {
+  in_frustum_.clear();
+  const glm::dmat4 world_from_scene = glm::translate(glm::dmat4(1.0), world_origin_m_);
+  for (const Eye& eye : eyes) {
+    hierarchy_.collect_in_frustum(frustum_of(eye.clip_from_world() * world_from_scene), one_eye_);
+    if (eyes.size() == 1) {
+      in_frustum_.swap(one_eye_);
+      break;
+    }
+    merged_.clear();
+    std::set_union(in_frustum_.begin(), in_frustum_.end(), one_eye_.begin(), one_eye_.end(),
+                   std::back_inserter(merged_));
+    in_frustum_.swap(merged_);
+  }
+  return in_frustum_;
+}
+
+const std::vector<ObjectId>& DrawListBuilder::visible(std::span<const Eye> eyes,
+                                                      const FrameDecision& decision) {
+  in_frustum(eyes);
+  if (decision.fallback != Fallback::none) return in_frustum_;
+  visible_.clear();
+  const glm::vec3 origin(world_origin_m_);
+  for (const ObjectId id : in_frustum_) {
+    Aabb world_bounds = hierarchy_.bounds_of(id);
+    world_bounds.min += origin;
+    world_bounds.max += origin;
+    if (decision.may_be_visible(id, world_bounds)) visible_.push_back(id);
+  }
+  return visible_;
+}
+
+}  // namespace sightline

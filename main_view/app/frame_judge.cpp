@@ -1,0 +1,106 @@
+#include "main_view/app/frame_judge.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <numeric>
+
+#include <glm/gtc/matrix_transform.hpp>
+
+namespace sightline {
+namespace {
+
+Frustum scene_frustum(const Eye& eye, const glm::dvec3& world_origin_m) {
+  return frustum_of(eye.clip_from_world() * glm::translate(glm::dmat4(1.0), world_origin_m));
+}
+
+}  // namespace
+
+FrameJudge::FrameJudge(const Scene& scene, gl::GpuScene& gpu_scene, ImageSize size)
+    : gpu_scene_(gpu_scene),
+      hierarchy_(scene.object_bounds),
+      whole_(size),
+      culled_(size),
+      seen_(scene.object_count()) {
+  for (std::uint32_t i = 0; i < scene.object_count(); ++i) {
+    blended_.push_back(gpu_scene.has_layer(gl::Layer::blended, ObjectId{i}));
+    triangles_.push_back(static_cast<std::uint32_t>(gpu_scene.triangle_count(ObjectId{i})));
+    triangles_all_ += triangles_.back();
+  }
+}
+
+const FrameTruth& FrameJudge::look(std::span<const Eye> eyes) {
+  true_codes_.resize(eyes.size());
+  seen_.assign(seen_.size(), false);
+  truth_.in_frustum.clear();
+  for (std::size_t i = 0; i < eyes.size(); ++i) {
+    look_at(eyes[i], true_codes_[i]);
+    std::vector<ObjectId> both;
+    std::set_union(truth_.in_frustum.begin(), truth_.in_frustum.end(), eye_ids_.begin(), eye_ids_.end(),
+                   std::back_inserter(both));
+    truth_.in_frustum = std::move(both);
+  }
+  truth_.visible.clear();
+  std::copy_if(truth_.in_frustum.begin(), truth_.in_frustum.end(), std::back_inserter(truth_.visible),
+               [this](ObjectId id) { return seen_[index_of(id)]; });
+  return truth_;
+}
+
+void FrameJudge::look_at(const Eye& eye, std::vector<ItemCode>& codes) {
+  hierarchy_.collect_in_frustum(scene_frustum(eye, gpu_scene_.world_origin_m()), eye_ids_);
+  whole_.draw(gpu_scene_, eye, eye_ids_);
+  whole_.read(codes);
+  ItemCode last = k_background_code;
+  for (const ItemCode code : codes) {
+    if (code == last) continue;
+    last = code;
+    if (code != k_background_code) seen_[index_of(object_of(code))] = true;
+  }
+  eye_blended_.clear();
+  std::copy_if(eye_ids_.begin(), eye_ids_.end(), std::back_inserter(eye_blended_),
+               [this](ObjectId id) { return blended_[index_of(id)]; });
+  blended_pixels_.assign(eye_blended_.size(), 0);
+  whole_.count_blended(gpu_scene_, eye, eye_blended_, blended_pixels_);
+  for (std::size_t i = 0; i < eye_blended_.size(); ++i) {
+    if (blended_pixels_[i] > 0) seen_[index_of(eye_blended_[i])] = true;
+  }
+}
+
+FrameVerdict FrameJudge::judge(std::span<const Eye> eyes, std::span<const ObjectId> drawn) {
+  const auto triangles_of = [this](std::span<const ObjectId> ids) {
+    return std::accumulate(ids.begin(), ids.end(), std::uint64_t{0},
+                           [this](std::uint64_t sum, ObjectId id) { return sum + triangles_[index_of(id)]; });
+  };
+  FrameVerdict verdict;
+  verdict.drawn_objects = static_cast<std::uint32_t>(drawn.size());
+  verdict.visible_objects = static_cast<std::uint32_t>(truth_.visible.size());
+  verdict.triangles_all = triangles_all_;
+  verdict.triangles_frustum = triangles_of(truth_.in_frustum);
+  verdict.triangles_drawn = triangles_of(drawn);
+  verdict.triangles_oracle = triangles_of(truth_.visible);
+
+  std::vector<ObjectId> missed;
+  std::set_difference(truth_.visible.begin(), truth_.visible.end(), drawn.begin(), drawn.end(),
+                      std::back_inserter(missed));
+  verdict.missed_objects = static_cast<std::uint32_t>(missed.size());
+  std::vector<ObjectId> missed_blended;
+  std::copy_if(missed.begin(), missed.end(), std::back_inserter(missed_blended),
+               [this](ObjectId id) { return blended_[index_of(id)]; });
+
+  for (std::size_t i = 0; i < eyes.size(); ++i) {
+    culled_.draw(gpu_scene_, eyes[i], drawn);
+    culled_.read(drawn_codes_);
+    missed_mask_.assign(drawn_codes_.size(), 0);
+    if (!missed_blended.empty()) {
+      // Against the true depth: what the culled image shows behind the glass is not the question.
+      whole_.draw(gpu_scene_, eyes[i], truth_.in_frustum);
+      whole_.read_blended_mask(gpu_scene_, eyes[i], missed_blended, missed_mask_);
+    }
+    verdict.pixels += drawn_codes_.size();
+    for (std::size_t pixel = 0; pixel < drawn_codes_.size(); ++pixel) {
+      verdict.wrong_pixels += drawn_codes_[pixel] != true_codes_[i][pixel] || missed_mask_[pixel] != 0;
+    }
+  }
+  return verdict;
+}
+
+}  // namespace sightline

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/gl/gpu_scene.hpp"
+#include "common/gl/item_buffer.hpp"
+#include "common/object_hierarchy.hpp"
+#include "common/view.hpp"
+
+namespace sightline {
+
+/// What is truly visible in one frame, all eyes together.
+struct FrameTruth {
+  std::vector<ObjectId> in_frustum;  ///< may intersect a view frustum; ascending
+  std::vector<ObjectId> visible;     ///< the exact visible set at the main resolution; ascending
+};
+
+/// How right and how thrifty a frame's draw list was.
+struct FrameVerdict {
+  std::uint64_t wrong_pixels = 0;    ///< over all eyes
+  std::uint64_t pixels = 0;          ///< of all eyes
+  std::uint32_t missed_objects = 0;  ///< visible, not drawn
+  std::uint32_t drawn_objects = 0;
+  std::uint32_t visible_objects = 0;
+  std::uint64_t triangles_all = 0, triangles_frustum = 0, triangles_drawn = 0, triangles_oracle = 0;
+};
+
+/// Renders item buffers at the main resolution with everything and with a draw list alone, and compares.
+///
+/// A pixel is wrong when it shows another object than the whole scene does, or where a blended object that
+/// was left out has a fragment in front of the opaque surfaces. A blended object is visible where any
+/// fragment of it passes the depth test against the opaque ones.
+class FrameJudge {
+ public:
+  /// `scene`'s bounds are copied; `gpu_scene` must outlive this.
+  FrameJudge(const Scene& scene, gl::GpuScene& gpu_scene, ImageSize size);
+
+  /// Draws the whole scene for each eye and keeps the images for judge. Valid until the next look.
+  const FrameTruth& look(std::span<const Eye> eyes);
+
+  /// Verdict on `drawn` (ascending), for the eyes of the last look.
+  [[nodiscard]] FrameVerdict judge(std::span<const Eye> eyes, std::span<const ObjectId> drawn);
+
+  [[nodiscard]] const ObjectHierarchy& hierarchy() const noexcept { return hierarchy_; }
+
+ private:
+  void look_at(const Eye& eye, std::vector<ItemCode>& codes);
+
+  gl::GpuScene& gpu_scene_;
+  ObjectHierarchy hierarchy_;
+  gl::ItemBuffer whole_, culled_;
+  std::vector<bool> blended_;
+  std::vector<std::uint32_t> triangles_;
+  std::uint64_t triangles_all_ = 0;
+  FrameTruth truth_;
+  std::vector<bool> seen_;
+  std::vector<std::vector<ItemCode>> true_codes_;  ///< by eye
+  std::vector<ItemCode> drawn_codes_;
+  std::vector<ObjectId> eye_ids_, eye_blended_;
+  std::vector<std::uint32_t> blended_pixels_;
+  std::vector<std::uint8_t> missed_mask_;
+};
+
+}  // namespace sightline

@@ -1,0 +1,195 @@
+#include "main_view/app/predict_command.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <string>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "common/camera_path.hpp"
+#include "common/error.hpp"
+#include "main_view/client/motion_predictor.hpp"
+
+namespace sightline {
+namespace {
+
+constexpr double k_longest_gap_s = 0.1;
+constexpr int k_longest_horizon = 600;
+// Before it the paper's window is not full, and the predictors would not be compared on their own terms.
+constexpr std::size_t k_warm_up = 20;
+
+struct Predictor {
+  const char* name;
+  int order;
+  int window;
+};
+
+std::vector<Predictor> predictors() {
+  const CullingOptions defaults;
+  return {{"avango", 2, 20},
+          {"constant_velocity", 1, 2},
+          {"hold", 0, 1},
+          {"default", defaults.predictor_order, defaults.predictor_window}};
+}
+
+using Segment = std::vector<TimedPose>;
+
+/// The stretches between pauses, resampled to a steady rate.
+std::vector<Segment> steady_segments(const CameraPath& trace, double rate_hz) {
+  std::vector<Segment> segments;
+  auto begin = trace.samples.begin();
+  while (begin != trace.samples.end()) {
+    const auto pause = std::adjacent_find(
+        begin, trace.samples.end(),
+        [](const TimedPose& a, const TimedPose& b) { return b.time_s - a.time_s > k_longest_gap_s; });
+    const auto end = pause == trace.samples.end() ? pause : std::next(pause);
+    const CameraPath stretch{{begin, end}};
+    const double start_s = begin->time_s;
+    const double last_s = std::prev(end)->time_s;
+    Segment segment;
+    for (std::size_t i = 0;; ++i) {
+      const double time_s = start_s + static_cast<double>(i) / rate_hz;
+      if (time_s > last_s) break;
+      segment.push_back({time_s, stretch.at(time_s)});
+    }
+    segments.push_back(std::move(segment));
+    begin = end;
+  }
+  return segments;
+}
+
+struct Errors {
+  std::vector<double> position_mm;
+  std::vector<double> rotation_deg;
+  std::size_t position_covered = 0;
+  std::size_t rotation_covered = 0;
+};
+
+void predict_segment(const Segment& segment, const CullingOptions& options, std::size_t horizon,
+                     Errors& errors) {
+  constexpr double k_degrees = 180.0 / 3.141592653589793;
+  PoseHistory history(options);
+  MotionPredictor predictor(options);
+  for (std::size_t i = 0; i + horizon < segment.size(); ++i) {
+    if (history.add(segment[i]) == PoseHistory::Added::jumped) predictor.forget_pending();
+    predictor.observe(history);
+    const TimedPose& truth = segment[i + horizon];
+    const PredictedPose predicted = predictor.predict(history, truth.time_s);
+    if (i + 1 < k_warm_up) continue;
+    const double position_m = glm::length(predicted.pose.position_m - truth.pose.position_m);
+    const double rotation_rad =
+        rotation_angle_rad(predicted.pose.world_from_camera, truth.pose.world_from_camera);
+    errors.position_mm.push_back(1000.0 * position_m);
+    errors.rotation_deg.push_back(k_degrees * rotation_rad);
+    // Below a nanometre and its like it is rounding, of a camera that stands still.
+    errors.position_covered += position_m <= predicted.position_error_m + 1e-9;
+    errors.rotation_covered += rotation_rad <= predicted.rotation_error_rad + 1e-7;
+  }
+}
+
+double mean(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value;
+  return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
+}
+
+/// Nearest rank.
+double quantile(std::vector<double> values, double share) {
+  if (values.empty()) return 0.0;
+  const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size())));
+  const auto at =
+      values.begin() + static_cast<std::ptrdiff_t>(std::clamp(rank, std::size_t{1}, values.size()) - 1);
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+nlohmann::json row_of(const std::string& trace, int horizon, const Predictor& predictor,
+                      const Errors& errors) {
+  const double count = static_cast<double>(std::max<std::size_t>(errors.position_mm.size(), 1));
+  return {{"trace", trace},
+          {"horizon", horizon},
+          {"predictor", predictor.name},
+          {"predictions", errors.position_mm.size()},
+          {"position_mm_mean", mean(errors.position_mm)},
+          {"position_mm_p95", quantile(errors.position_mm, 0.95)},
+          {"position_mm_p99", quantile(errors.position_mm, 0.99)},
+          {"rotation_deg_mean", mean(errors.rotation_deg)},
+          {"rotation_deg_p95", quantile(errors.rotation_deg, 0.95)},
+          {"rotation_deg_p99", quantile(errors.rotation_deg, 0.99)},
+          {"position_covered", static_cast<double>(errors.position_covered) / count},
+          {"rotation_covered", static_cast<double>(errors.rotation_covered) / count}};
+}
+
+void require_usable(const PredictOptions& options) {
+  if (options.traces.empty()) throw InputError("--trace is missing: give at least one CSV");
+  if (!(options.rate_hz >= 1.0 && options.rate_hz <= 1000.0)) {
+    throw InputError("--rate is " + std::to_string(options.rate_hz) + ": give 1 to 1000 Hz");
+  }
+  if (options.horizons.empty()) throw InputError("--horizons is empty: give frames ahead, for example 1,2,5");
+  for (const int horizon : options.horizons) {
+    if (horizon >= 1 && horizon <= k_longest_horizon) continue;
+    throw InputError("--horizons has " + std::to_string(horizon) + ": give 1 to " +
+                     std::to_string(k_longest_horizon) + " frames");
+  }
+}
+
+/// Mean over the traces of each predictor's mean error over the paper's.
+void print_summary(const nlohmann::json& rows, const PredictOptions& options) {
+  std::printf("mean error over the traces, relative to avango (order 2 over 20 poses); smaller is better\n");
+  for (const char* field : {"position_mm_mean", "rotation_deg_mean"}) {
+    for (const Predictor& predictor : predictors()) {
+      std::printf("%-18s %-18s", field, predictor.name);
+      for (const int horizon : options.horizons) {
+        std::map<std::string, double> own;
+        std::map<std::string, double> papers;
+        for (const auto& row : rows) {
+          if (row["horizon"] != horizon) continue;
+          if (row["predictor"] == predictor.name) own[row["trace"]] = row[field];
+          if (row["predictor"] == "avango") papers[row["trace"]] = row[field];
+        }
+        std::vector<double> ratios;
+        for (const auto& [trace, error] : own) {
+          if (papers[trace] > 0.0) ratios.push_back(error / papers[trace]);
+        }
+        std::printf("  k=%-3d %5.2f", horizon, mean(ratios));
+      }
+      std::printf("\n");
+    }
+  }
+}
+
+}  // namespace
+
+int run_predict(const PredictOptions& options) {
+  require_usable(options);
+  nlohmann::json rows = nlohmann::json::array();
+  for (const auto& file : options.traces) {
+    const auto segments = steady_segments(read_camera_path(file), options.rate_hz);
+    for (const int horizon : options.horizons) {
+      for (const Predictor& predictor : predictors()) {
+        CullingOptions culling;
+        culling.predictor_order = predictor.order;
+        culling.predictor_window = predictor.window;
+        Errors errors;
+        for (const Segment& segment : segments) {
+          predict_segment(segment, culling, static_cast<std::size_t>(horizon), errors);
+        }
+        rows.push_back(row_of(file.stem().string(), horizon, predictor, errors));
+      }
+    }
+  }
+  std::ofstream out(options.json);
+  out << nlohmann::json{{"rate_hz", options.rate_hz}, {"rows", rows}}.dump(2) << '\n';
+  if (!out.flush())
+    throw InputError("--json " + options.json.string() +
+                     " cannot be written: give a file in an existing folder");
+  print_summary(rows, options);
+  return static_cast<int>(ExitCode::done);
+}
+
+}  // namespace sightline

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "common/camera_path.hpp"
+#include "main_view/app/depth_complexity.hpp"
+#include "main_view/app/draw_list.hpp"
+#include "main_view/app/drawable_scene.hpp"
+#include "main_view/app/fly_camera.hpp"
+#include "main_view/app/frame_judge.hpp"
+#include "main_view/app/overlay.hpp"
+#include "main_view/app/service_connection.hpp"
+#include "main_view/app/view_panel.hpp"
+
+namespace sightline {
+
+/// The window of `main_view view`: one step a frame, input -> camera -> culling -> picture -> panel.
+class Viewer {
+ public:
+  /// `path` may be empty.
+  Viewer(const ViewOptions& options, Scene scene, CameraPath path);
+
+  /// One frame; false when the window was closed.
+  bool step();
+  /// The window as it was last drawn, panel included.
+  [[nodiscard]] const Image& screenshot() const noexcept { return screenshot_; }
+
+ private:
+  /// The culling of one camera, kept while another one looks at it.
+  struct Frozen {
+    Eye eye;
+    std::vector<ObjectId> drawn;
+    double depth_m;
+  };
+  /// Everything that depends on the window's size.
+  struct Sized {
+    Sized(DrawableScene& scene, const ViewOptions& options, ImageSize size);
+    ImageSize size;
+    RenderTarget target;
+    FrameJudge judge;
+    gl::ItemBuffer items;
+    DepthComplexity complexity;
+    CullingCore core;
+  };
+
+  void follow_window_size();
+  void handle_keys();
+  void handle_mouse();
+  void move_camera(double dt_s);
+  [[nodiscard]] bool pressed(int key);
+  void choose_objects(const Eye& eye, double now_s);
+  void choose_with_service(const Eye& eye, double now_s);
+  void take_answers(double now_s);
+  void draw_picture(const Eye& eye);
+  void toggle_freeze();
+  void describe_service();
+
+  ViewOptions options_;
+  CameraPath path_;
+  std::unique_ptr<gl::Context> context_;
+  DrawableScene scene_;
+  std::unique_ptr<ServiceConnection> connection_;
+  DrawListBuilder draw_list_;
+  Overlay overlay_;
+  ViewPanel panel_;
+  std::optional<Sized> sized_;
+
+  FlyCamera camera_;
+  double path_s_ = 0.0;
+  double last_step_s_ = 0.0;
+  double speed_m_per_s_ = 5.0;
+  std::array<double, 2> cursor_{};
+  bool looking_ = false;
+  std::vector<int> keys_down_;
+  std::uint64_t lost_seen_ = 0;
+
+  std::vector<ObjectId> drawn_;
+  std::optional<Frozen> frozen_;
+  ViewStatus status_;
+  Image screenshot_;
+};
+
+}  // namespace sightline

@@ -1,0 +1,195 @@
+#include "main_view/client/culling_core.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "common/error.hpp"
+#include "main_view/client/field_coverage.hpp"
+
+namespace sightline {
+namespace {
+
+template <typename Matrix>
+bool is_finite(const Matrix& matrix) {
+  for (glm::length_t column = 0; column < Matrix::length(); ++column) {
+    for (glm::length_t row = 0; row < Matrix::col_type::length(); ++row) {
+      if (!std::isfinite(matrix[column][row])) return false;
+    }
+  }
+  return true;
+}
+
+glm::dvec3 position_of(const Eye& eye) noexcept {
+  const glm::dmat4& m = eye.camera_from_world;
+  return -(glm::transpose(glm::dmat3(m)) * glm::dvec3(m[3]));
+}
+
+CullingOptions validated(CullingOptions options) {
+  options.validate();
+  return options;
+}
+
+}  // namespace
+
+std::vector<Eye> eyes_of(const Pose& head, std::span<const RigEye> rig) {
+  const glm::dmat4 head_from_world = camera_from_world(head);
+  std::vector<Eye> eyes;
+  eyes.reserve(rig.size());
+  for (const RigEye& eye : rig)
+    eyes.push_back({eye.camera_from_head * head_from_world, eye.clip_from_camera});
+  return eyes;
+}
+
+CullingCore::CullingCore(CullingOptions options, std::vector<RigEye> rig)
+    : options_(validated(options)),
+      rig_(std::move(rig)),
+      history_(options_),
+      predictor_(options_),
+      horizon_(options_) {
+  if (rig_.empty() || rig_.size() > k_max_eyes) {
+    throw InputError("rig has " + std::to_string(rig_.size()) + " eyes: give 1 to " +
+                     std::to_string(k_max_eyes));
+  }
+  for (const RigEye& eye : rig_) {
+    if (is_finite(eye.camera_from_head) && is_finite(eye.clip_from_camera)) continue;
+    throw InputError(
+        "rig has an eye whose matrices are not finite: give a rigid camera_from_head and a projection");
+  }
+}
+
+void CullingCore::add_pose(const TimedPose& head) {
+  const PoseHistory::Added added = history_.add(head);
+  if (added == PoseHistory::Added::ignored) return;
+  if (added == PoseHistory::Added::jumped) {
+    timeline_.clear();
+    first_valid_request_seq_ = next_request_seq_;
+    reset_pending_ = true;
+  }
+  if (added != PoseHistory::Added::continued) predictor_.forget_pending();
+  predictor_.observe(history_);
+}
+
+void CullingCore::move_objects(std::span<const ObjectMove> moves) {
+  for (const ObjectMove& move : moves) {
+    if (is_finite(move.world_from_object)) continue;
+    throw InputError("move of object " + std::to_string(index_of(move.id)) +
+                     " is not finite: give a placement");
+  }
+  for (const ObjectMove& move : moves) placements_[move.id] = {move.world_from_object, 0, false};
+}
+
+double CullingCore::guard_rad(const PredictedPose& predicted) const noexcept {
+  // A set serves until the next one comes: so long the camera turns away from even a perfect prediction.
+  const double turned_rad = history_.turn_speed_rad_per_s() * horizon_.answer_interval_s();
+  return std::clamp(predicted.rotation_error_rad + turned_rad, options_.min_guard_rad,
+                    options_.max_guard_rad);
+}
+
+ViewRequest CullingCore::make_request(double now_s, ImageSize main_size) {
+  if (history_.empty()) throw InputError("no camera pose yet: add one before making a request");
+  const double newest_s = history_.newest().time_s;
+  // A pose long past says nothing of now: beyond the largest horizon nothing is extrapolated.
+  const double lead_s = std::min(now_s - newest_s + horizon_.horizon_s(), options_.max_horizon_s);
+
+  ViewRequest request;
+  request.request_seq = next_request_seq_++;
+  request.for_time_s = now_s + horizon_.horizon_s();
+  request.main_size = main_size;
+  request.reset_filter = reset_pending_;
+  const PredictedPose predicted = predictor_.predict(history_, newest_s + lead_s);
+  request.eyes = eyes_of(predicted.pose, rig_);
+  if (lead_s > 0.0) {
+    request.rotation_error_rad = guard_rad(predicted);
+    request.position_error_m = predicted.position_error_m;
+  }
+  for (auto& [id, placement] : placements_) {
+    if (placement.acknowledged) continue;
+    if (placement.first_request_seq == 0) placement.first_request_seq = request.request_seq;
+    request.moves.push_back({id, placement.world_from_object});
+  }
+  return request;
+}
+
+void CullingCore::accept(const ViewRequest& request, double issued_s, const VisibleSet& set,
+                         double received_s) {
+  horizon_.observe(issued_s, received_s);
+  for (auto& [id, placement] : placements_) {
+    const std::uint64_t first = placement.first_request_seq;
+    if (first != 0 && request.request_seq >= first) placement.acknowledged = true;
+  }
+  if (request.request_seq < first_valid_request_seq_) return;
+  reset_pending_ = false;
+  timeline_.drop_before(received_s - options_.max_staleness_s);
+  timeline_.file(request, set);
+}
+
+void CullingCore::forget_sets() {
+  timeline_.clear();
+  first_valid_request_seq_ = next_request_seq_;
+  reset_pending_ = true;
+  horizon_.restart_interval();
+  for (auto& [id, placement] : placements_) placement = {placement.world_from_object, 0, false};
+}
+
+bool CullingCore::usable(const FiledSet& filed, double now_s, std::span<const Eye> eyes) const {
+  const double lead_s = filed.request.for_time_s - now_s;
+  if (lead_s < -options_.max_staleness_s ||
+      lead_s > std::max(options_.max_staleness_s, options_.max_horizon_s)) {
+    return false;
+  }
+  if (filed.request.eyes.size() != eyes.size()) return false;
+  const double limit_m = options_.max_position_offset_m + history_.speed_m_per_s() * std::abs(lead_s);
+  for (std::size_t i = 0; i < eyes.size(); ++i) {
+    // Written so that NaN is not usable.
+    if (!(glm::length(position_of(eyes[i]) - position_of(filed.request.eyes[i])) <= limit_m)) return false;
+  }
+  return true;
+}
+
+VisibleSet CullingCore::moved_since(std::uint64_t request_seq) const {
+  std::vector<ObjectId> ids;
+  for (const auto& [id, placement] : placements_) {
+    if (placement.first_request_seq == 0 || placement.first_request_seq > request_seq) ids.push_back(id);
+  }
+  return VisibleSet(ids);
+}
+
+FrameDecision CullingCore::decide(double now_s, std::span<const Eye> eyes) const {
+  FrameDecision decision;
+  decision.eye_count = eyes.size();
+  const FiledSet* last = timeline_.last_at_or_before(now_s);
+  const FiledSet* next = timeline_.next_after(now_s);
+  if (last == nullptr && next == nullptr) return decision;
+  if (last != nullptr && !usable(*last, now_s, eyes)) last = nullptr;
+  if (next != nullptr && !usable(*next, now_s, eyes)) next = nullptr;
+  if (last == nullptr && next == nullptr) {
+    decision.fallback = Fallback::stale;
+    return decision;
+  }
+
+  decision.fallback = Fallback::none;
+  if (last != nullptr) decision.last_age_s = now_s - last->request.for_time_s;
+  if (next != nullptr) decision.next_lead_s = next->request.for_time_s - now_s;
+  std::vector<bool> covered(eyes.size(), false);
+  for (const FiledSet* filed : {last, next}) {
+    if (filed == nullptr) continue;
+    decision.visible.unite(filed->set);
+    decision.visible.unite(moved_since(filed->request.request_seq));
+    for (std::size_t i = 0; i < eyes.size(); ++i) {
+      const Eye& requested = filed->request.eyes[i];
+      decision.tested.push_back(tested_field(requested, filed->request.rotation_error_rad));
+      decision.fields.push_back({i, cutting_sides(requested, filed->request.rotation_error_rad, eyes[i])});
+      if (cuts_nothing(decision.fields.back().cutting_sides)) covered[i] = true;
+    }
+  }
+  decision.field_covered = std::find(covered.begin(), covered.end(), false) == covered.end();
+  return decision;
+}
+
+double CullingCore::horizon_s() const noexcept {
+  return horizon_.horizon_s();
+}
+
+}  // namespace sightline

@@ -1,0 +1,39 @@
+#pragma once
+
+namespace sightline {
+
+/// What an application may choose about prediction, horizon, guard and staleness. Every field has a working
+/// default.
+struct CullingOptions {
+  /// Throws InputError naming the first field that is out of its range.
+  void validate() const;
+
+  // Motion prediction: order n over the last p poses (the paper's 2 and 20).
+  int predictor_order = 2;    ///< 0 to k_max_predictor_order
+  int predictor_window = 20;  ///< poses, 1 to k_max_predictor_window
+
+  // What is a jump rather than a motion (see PoseHistory).
+  double jump_distance_m = 0.5;             ///< a step this long needs no motion to explain it
+  double jump_speed_factor = 4.0;           ///< further than this times recent speed * dt beyond it: a jump
+  double jump_rotation_rad = 0.35;          ///< likewise for a turn: 20 degrees
+  double jump_turn_speed_rad_per_s = 15.7;  ///< and the fastest head turn there is: 900 degrees a second
+  double pose_gap_s = 0.5;  ///< a longer pause: older poses no longer say how the camera moves
+
+  // Horizon (see HorizonEstimator).
+  double initial_horizon_s = 0.0;  ///< until a round trip was measured; 0 asks for the current view
+  double max_horizon_s = 0.5;
+
+  // Guard: how far the tested field reaches beyond the view. Only where something is predicted: with a
+  // horizon of zero the view is known and nothing is added.
+  double min_guard_rad = 0.175;  ///< 10 degrees
+  double max_guard_rad = 0.524;  ///< 30 degrees; a wider field leaves fewer pixels for what is in view
+
+  // When a set says too little about now.
+  double max_staleness_s = 0.3;        ///< oldest S_last
+  double max_position_offset_m = 0.5;  ///< eye now against eye of the request, beyond what the speed explains
+};
+
+inline constexpr int k_max_predictor_order = 5;
+inline constexpr int k_max_predictor_window = 240;
+
+}  // namespace sightline

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "main_view/client/culling_core.hpp"
+#include "protocol/endpoint_link.hpp"
+
+namespace sightline {
+
+struct SessionOptions {
+  std::string endpoint;
+  std::string client_name = "main_view";
+  SceneDigest scene_digest{};
+  std::uint32_t object_count = 0;
+  LinkOptions link;
+  double reconnect_interval_s = 0.25;  ///< between Hellos while no daemon answers
+  double silence_limit_s = 1.0;        ///< no frame for this long: the session is lost
+};
+
+enum class SessionState { connecting, open, refused };
+
+/// An answer that has arrived and been turned back into a set.
+struct Answer {
+  ViewRequest request;
+  double issued_s = 0.0;
+  VisibleSet set;
+  VisibleSetFrame frame;  ///< bitmap left empty; times and counts as sent
+};
+
+/// The session with one daemon: handshake, heartbeat, reconnect, deltas against the last acknowledged set.
+/// Never blocks except in wait_for; a refused session (other version, other scene) stays refused and says
+/// why.
+class CullingSession {
+ public:
+  explicit CullingSession(SessionOptions options);
+  ~CullingSession();
+
+  /// Reads what has arrived, answers pings, says Hello when due. Call once a frame.
+  /// Returns the answers that arrived, oldest first. A frame that does not decode is counted and dropped.
+  std::vector<Answer> poll(double now_s);
+
+  /// Sends a request (fills in session_id and acked_set_seq). Does nothing unless open.
+  bool send(ViewRequest request, double now_s);
+
+  /// Blocks until the answer to `request_seq` has arrived or `timeout_s` passed. For audits and tests.
+  [[nodiscard]] std::optional<Answer> wait_for(std::uint64_t request_seq, double timeout_s);
+  /// Blocks until the session is open or refused, or `timeout_s` passed.
+  SessionState wait_until_open(double timeout_s);
+
+  [[nodiscard]] SessionState state() const noexcept;
+  /// The daemon's Welcome, while open.
+  [[nodiscard]] const std::optional<Welcome>& welcome() const noexcept;
+  /// Why the session was refused, while refused.
+  [[nodiscard]] const std::optional<Refusal>& refusal() const noexcept;
+  /// Goes up each time an open session is lost: the caller then forgets its sets.
+  [[nodiscard]] std::uint64_t lost_count() const noexcept;
+  [[nodiscard]] std::uint64_t bytes_sent() const noexcept;
+  [[nodiscard]] std::uint64_t bytes_received() const noexcept;
+  [[nodiscard]] std::uint64_t bad_frame_count() const noexcept;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace sightline

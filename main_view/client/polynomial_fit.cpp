@@ -1,0 +1,114 @@
+#include "main_view/client/polynomial_fit.hpp"
+
+#include <Eigen/Dense>
+#include <utility>
+
+#include <ceres/tiny_solver.h>
+
+#include "main_view/client/culling_options.hpp"
+
+namespace sightline {
+namespace {
+
+template <int ParameterCount>
+using Powers = Eigen::Matrix<double, Eigen::Dynamic, ParameterCount>;
+
+/// Residuals of one component: polynomial minus sample. Linear, so the Jacobian is the matrix of powers
+/// itself.
+template <int ParameterCount>
+struct ComponentResiduals {
+  using Scalar = double;
+  enum { NUM_RESIDUALS = Eigen::Dynamic, NUM_PARAMETERS = ParameterCount };
+
+  const Powers<ParameterCount>& powers;
+  const Eigen::VectorXd& samples;
+
+  [[nodiscard]] int NumResiduals() const { return static_cast<int>(powers.rows()); }
+
+  bool operator()(const double* parameters, double* residuals, double* jacobian) const {
+    const Eigen::Map<const Eigen::Matrix<double, ParameterCount, 1>> coefficients(parameters);
+    Eigen::Map<Eigen::VectorXd>(residuals, powers.rows()).noalias() = powers * coefficients - samples;
+    if (jacobian != nullptr)
+      Eigen::Map<Powers<ParameterCount>>(jacobian, powers.rows(), ParameterCount) = powers;
+    return true;
+  }
+};
+
+template <int ParameterCount>
+Eigen::Matrix<double, ParameterCount, 1> powers_of(double x) {
+  Eigen::Matrix<double, ParameterCount, 1> row;
+  row[0] = 1.0;
+  for (int i = 1; i < ParameterCount; ++i) row[i] = row[i - 1] * x;
+  return row;
+}
+
+template <int ParameterCount>
+Extrapolation fit(std::span<const double> times_s, std::span<const PoseComponents> values, double at_time_s) {
+  const auto count = static_cast<Eigen::Index>(times_s.size());
+  const double centre_s = 0.5 * (times_s.front() + times_s.back());
+  const double half_span_s = count > 1 ? 0.5 * (times_s.back() - times_s.front()) : 1.0;
+
+  Powers<ParameterCount> powers(count, ParameterCount);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    powers.row(i) =
+        powers_of<ParameterCount>((times_s[static_cast<std::size_t>(i)] - centre_s) / half_span_s);
+  }
+  const auto at = powers_of<ParameterCount>((at_time_s - centre_s) / half_span_s);
+
+  Extrapolation result;
+  result.residuals_known = count > ParameterCount;
+  double leverage = 0.0;
+  if (result.residuals_known) {
+    const Eigen::Matrix<double, ParameterCount, ParameterCount> normal = powers.transpose() * powers;
+    leverage = at.dot(normal.ldlt().solve(at));
+  }
+
+  ceres::TinySolver<ComponentResiduals<ParameterCount>> solver;
+  // A linear problem is solved by one undamped step; the second polishes what the first rounded away.
+  // TinySolver's cost tolerances are absolute, and a cost of 1e-12 square metres still matters here.
+  solver.options.initial_trust_region_radius = 1e16;
+  solver.options.max_num_iterations = 3;
+  solver.options.function_tolerance = 0.0;
+  solver.options.cost_threshold = 0.0;
+  solver.options.gradient_tolerance = 0.0;
+  solver.options.parameter_tolerance = 1e-12;
+
+  Eigen::VectorXd samples(count);
+  for (std::size_t component = 0; component < k_pose_component_count; ++component) {
+    const double newest = values.back()[component];
+    for (Eigen::Index i = 0; i < count; ++i)
+      samples[i] = values[static_cast<std::size_t>(i)][component] - newest;
+    Eigen::Matrix<double, ParameterCount, 1> coefficients = Eigen::Matrix<double, ParameterCount, 1>::Zero();
+    solver.Solve(ComponentResiduals<ParameterCount>{powers, samples}, &coefficients);
+    result.value[component] = newest + at.dot(coefficients);
+    if (result.residuals_known) {
+      const double residual_variance =
+          (powers * coefficients - samples).squaredNorm() / static_cast<double>(count - ParameterCount);
+      result.variance[component] = residual_variance * (1.0 + leverage);
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+Extrapolation fit_and_extrapolate(std::span<const double> times_s, std::span<const PoseComponents> values,
+                                  int order, double at_time_s) {
+  static_assert(k_max_predictor_order == 5, "one case an order");
+  switch (order) {
+    case 0:
+      return fit<1>(times_s, values, at_time_s);
+    case 1:
+      return fit<2>(times_s, values, at_time_s);
+    case 2:
+      return fit<3>(times_s, values, at_time_s);
+    case 3:
+      return fit<4>(times_s, values, at_time_s);
+    case 4:
+      return fit<5>(times_s, values, at_time_s);
+    default:
+      return fit<6>(times_s, values, at_time_s);
+  }
+}
+
+}  // namespace sightline

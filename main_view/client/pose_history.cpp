@@ -1,0 +1,93 @@
+#include "main_view/client/pose_history.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "common/error.hpp"
+
+namespace sightline {
+namespace {
+
+void require_usable(const TimedPose& sample) {
+  const auto& p = sample.pose.position_m;
+  const auto& q = sample.pose.world_from_camera;
+  const double length = glm::dot(q, q);
+  const bool finite = std::isfinite(sample.time_s) && std::isfinite(p.x) && std::isfinite(p.y) &&
+                      std::isfinite(p.z) && std::isfinite(length);
+  if (finite && length > 1e-12) return;
+  throw InputError("camera pose at " + std::to_string(sample.time_s) +
+                   " s is not usable: give finite numbers and a quaternion that is not zero");
+}
+
+}  // namespace
+
+PoseHistory::PoseHistory(const CullingOptions& options) : options_(options) {
+  // Two poses at least: with a window of one the speed must still be known.
+  samples_.reserve(static_cast<std::size_t>(std::max(options.predictor_window, 2)) + 1);
+}
+
+PoseHistory::Added PoseHistory::add(const TimedPose& sample) {
+  require_usable(sample);
+  if (!samples_.empty() && sample.time_s < samples_.back().time_s) return Added::ignored;
+
+  TimedPose held = sample;
+  held.pose.world_from_camera = glm::normalize(sample.pose.world_from_camera);
+  Added result = Added::continued;
+  if (samples_.empty()) {
+    result = Added::restarted;
+  } else if (is_jump(samples_.back(), held)) {
+    result = Added::jumped;
+    samples_.clear();
+  } else if (held.time_s - samples_.back().time_s > options_.pose_gap_s) {
+    result = Added::restarted;
+    samples_.clear();
+  } else if (held.time_s == samples_.back().time_s) {
+    samples_.pop_back();
+  }
+
+  if (!samples_.empty() &&
+      glm::dot(samples_.back().pose.world_from_camera, held.pose.world_from_camera) < 0.0) {
+    held.pose.world_from_camera = -held.pose.world_from_camera;
+  }
+  samples_.push_back(held);
+  if (samples_.size() == samples_.capacity()) samples_.erase(samples_.begin());
+  newest_as_given_ = sample;
+  return result;
+}
+
+bool PoseHistory::is_jump(const TimedPose& from, const TimedPose& to) const noexcept {
+  const double dt_s = to.time_s - from.time_s;
+  const double moved_m = glm::length(to.pose.position_m - from.pose.position_m);
+  const double turned_rad = rotation_angle_rad(from.pose.world_from_camera, to.pose.world_from_camera);
+  return moved_m > options_.jump_distance_m + options_.jump_speed_factor * speed_m_per_s() * dt_s ||
+         turned_rad > options_.jump_rotation_rad + options_.jump_turn_speed_rad_per_s * dt_s;
+}
+
+bool PoseHistory::still() const noexcept {
+  return std::all_of(samples_.begin(), samples_.end(),
+                     [this](const TimedPose& sample) { return sample.pose == samples_.back().pose; });
+}
+
+double PoseHistory::speed_m_per_s() const noexcept {
+  double speed = 0.0;
+  for (std::size_t i = 1; i < samples_.size(); ++i) {
+    const double dt_s = samples_[i].time_s - samples_[i - 1].time_s;
+    speed =
+        std::max(speed, glm::length(samples_[i].pose.position_m - samples_[i - 1].pose.position_m) / dt_s);
+  }
+  return speed;
+}
+
+double PoseHistory::turn_speed_rad_per_s() const noexcept {
+  double speed = 0.0;
+  for (std::size_t i = 1; i < samples_.size(); ++i) {
+    const double dt_s = samples_[i].time_s - samples_[i - 1].time_s;
+    speed = std::max(speed, rotation_angle_rad(samples_[i - 1].pose.world_from_camera,
+                                               samples_[i].pose.world_from_camera) /
+                                dt_s);
+  }
+  return speed;
+}
+
+}  // namespace sightline

@@ -1,0 +1,43 @@
+#include "main_view/client/visible_set_timeline.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+namespace sightline {
+namespace {
+
+constexpr auto k_is_before = [](const FiledSet& filed, double time_s) {
+  return filed.request.for_time_s < time_s;
+};
+constexpr auto k_is_after = [](double time_s, const FiledSet& filed) {
+  return time_s < filed.request.for_time_s;
+};
+
+}  // namespace
+
+void VisibleSetTimeline::file(ViewRequest request, VisibleSet set) {
+  const auto at = std::lower_bound(sets_.begin(), sets_.end(), request.for_time_s, k_is_before);
+  if (at != sets_.end() && at->request.for_time_s == request.for_time_s) {
+    if (request.request_seq > at->request.request_seq) *at = {std::move(request), std::move(set)};
+    return;
+  }
+  sets_.insert(at, {std::move(request), std::move(set)});
+  if (sets_.size() > capacity_) sets_.erase(sets_.begin());
+}
+
+void VisibleSetTimeline::drop_before(double time_s) {
+  sets_.erase(sets_.begin(), std::lower_bound(sets_.begin(), sets_.end(), time_s, k_is_before));
+}
+
+const FiledSet* VisibleSetTimeline::last_at_or_before(double now_s) const noexcept {
+  const auto after = std::upper_bound(sets_.begin(), sets_.end(), now_s, k_is_after);
+  return after == sets_.begin() ? nullptr : &*std::prev(after);
+}
+
+const FiledSet* VisibleSetTimeline::next_after(double now_s) const noexcept {
+  const auto after = std::upper_bound(sets_.begin(), sets_.end(), now_s, k_is_after);
+  return after == sets_.end() ? nullptr : &*after;
+}
+
+}  // namespace sightline

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "protocol/messages.hpp"
+#include "protocol/visible_set.hpp"
+
+namespace sightline {
+
+/// A visible set and the request that it answers, which says for which time, from where, and how far it
+/// looked.
+struct FiledSet {
+  ViewRequest request;
+  VisibleSet set;
+};
+
+/// The visible sets at hand, each under the time it is FOR (not when it arrived), oldest first. Client's
+/// clock.
+class VisibleSetTimeline {
+ public:
+  /// Keeps at most `capacity` sets: the oldest goes first.
+  explicit VisibleSetTimeline(std::size_t capacity = 64) : capacity_(capacity) {}
+
+  /// Of two sets for the same time the one with the newer request stays.
+  void file(ViewRequest request, VisibleSet set);
+
+  /// Forgets the sets for times before `time_s`.
+  void drop_before(double time_s);
+  void clear() noexcept { sets_.clear(); }
+
+  /// S_last and S_next: the nearest set for a time at or before `now_s`, and after it. Null where there is
+  /// none. Valid until the timeline changes.
+  [[nodiscard]] const FiledSet* last_at_or_before(double now_s) const noexcept;
+  [[nodiscard]] const FiledSet* next_after(double now_s) const noexcept;
+  [[nodiscard]] std::size_t size() const noexcept { return sets_.size(); }
+
+ private:
+  std::size_t capacity_;
+  std::vector<FiledSet> sets_;
+};
+
+}  // namespace sightline

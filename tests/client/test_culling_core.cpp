@@ -1,0 +1,205 @@
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "common/error.hpp"
+#include "main_view/client/culling_core.hpp"
+
+namespace sightline {
+namespace {
+
+constexpr double k_degree = 3.141592653589793 / 180.0;
+constexpr ImageSize k_size{640, 480};
+const Aabb k_nowhere{{1e4f, 1e4f, 1e4f}, {1e4f + 1, 1e4f + 1, 1e4f + 1}};
+
+std::vector<RigEye> one_eye() {
+  return {{glm::dmat4(1.0), clip_from_camera(Perspective{}, 4.0 / 3.0)}};
+}
+
+Pose pose_at(double x_m, double yaw_deg = 0.0) {
+  const double half = 0.5 * yaw_deg * k_degree;
+  return {{x_m, 1.7, 0.0}, {std::cos(half), 0.0, std::sin(half), 0.0}};
+}
+
+VisibleSet set_of(std::initializer_list<std::uint32_t> indices) {
+  std::vector<ObjectId> ids;
+  for (const std::uint32_t index : indices) ids.push_back(ObjectId{index});
+  return VisibleSet(ids);
+}
+
+ViewRequest request_for(const CullingCore& core, double time_s, std::uint64_t seq, const Pose& pose) {
+  ViewRequest request;
+  request.for_time_s = time_s;
+  request.request_seq = seq;
+  request.eyes = eyes_of(pose, core.rig());
+  request.rotation_error_rad = 10.0 * k_degree;
+  return request;
+}
+
+TEST(CullingCore, DrawsEverythingInTheFrustumUntilASetArrives) {
+  CullingCore core({}, one_eye());
+  core.add_pose({0.0, pose_at(0.0)});
+  const FrameDecision decision = core.decide(0.0, eyes_of(pose_at(0.0), core.rig()));
+  EXPECT_EQ(decision.fallback, Fallback::no_set);
+  EXPECT_TRUE(decision.may_be_visible(ObjectId{12345}, k_nowhere));
+}
+
+TEST(CullingCore, DrawsWhatTheSetBeforeOrTheSetAfterNowHolds) {
+  CullingCore core({}, one_eye());
+  core.add_pose({1.0, pose_at(0.0)});
+  core.accept(request_for(core, 0.9, 1, pose_at(0.0)), 0.8, set_of({1}), 0.9);
+  core.accept(request_for(core, 0.99, 2, pose_at(0.0)), 0.9, set_of({2}), 1.0);
+  core.accept(request_for(core, 1.02, 3, pose_at(0.0)), 0.9, set_of({3}), 1.0);
+  core.accept(request_for(core, 1.05, 4, pose_at(0.0)), 0.9, set_of({4}), 1.0);
+  const FrameDecision decision = core.decide(1.0, eyes_of(pose_at(0.0), core.rig()));
+  EXPECT_EQ(decision.fallback, Fallback::none);
+  EXPECT_EQ(decision.visible, set_of({2, 3}));
+  EXPECT_TRUE(decision.field_covered);
+  EXPECT_TRUE(decision.may_be_visible(ObjectId{2}, k_nowhere));
+  EXPECT_TRUE(decision.may_be_visible(ObjectId{3}, k_nowhere));
+  EXPECT_FALSE(decision.may_be_visible(ObjectId{1}, k_nowhere));
+  EXPECT_NEAR(*decision.last_age_s, 0.01, 1e-12);
+  EXPECT_NEAR(*decision.next_lead_s, 0.02, 1e-12);
+}
+
+TEST(CullingCore, DrawsTheSetForThisVeryPoseAlone) {
+  CullingCore core({}, one_eye());
+  for (int i = 0; i < 60; ++i) {
+    const double now_s = i / 60.0;
+    const Pose pose = pose_at(0.001 * i * i, 2.0 * i);
+    core.add_pose({now_s, pose});
+    const ViewRequest request = core.make_request(now_s, k_size);
+    EXPECT_EQ(request.for_time_s, now_s);
+    EXPECT_EQ(request.eyes, eyes_of(pose, core.rig()));
+    EXPECT_EQ(request.rotation_error_rad, 0.0);
+    const auto id = static_cast<std::uint32_t>(i);
+    core.accept(request, now_s, set_of({id}), now_s);
+    const FrameDecision decision = core.decide(now_s, eyes_of(pose, core.rig()));
+    EXPECT_EQ(decision.visible, set_of({id}));
+    EXPECT_TRUE(decision.field_covered);
+    EXPECT_EQ(decision.last_age_s, 0.0);
+    EXPECT_FALSE(decision.next_lead_s.has_value());
+  }
+}
+
+TEST(CullingCore, FallsBackWhenTheSetsAreTooOld) {
+  const CullingOptions options;
+  CullingCore core(options, one_eye());
+  core.add_pose({0.0, pose_at(0.0)});
+  core.accept(request_for(core, 0.0, 1, pose_at(0.0)), 0.0, set_of({1}), 0.0);
+  const auto eyes = eyes_of(pose_at(0.0), core.rig());
+  EXPECT_EQ(core.decide(options.max_staleness_s * 0.99, eyes).fallback, Fallback::none);
+  EXPECT_EQ(core.decide(options.max_staleness_s * 1.01, eyes).fallback, Fallback::stale);
+  core.forget_sets();
+  EXPECT_EQ(core.decide(0.0, eyes).fallback, Fallback::no_set);
+}
+
+TEST(CullingCore, DoesNotUseASetFromElsewhereOrWithOtherEyes) {
+  CullingCore core({}, one_eye());
+  core.add_pose({0.0, pose_at(0.0)});
+  core.accept(request_for(core, 0.0, 1, pose_at(2.0)), 0.0, set_of({1}), 0.0);
+  EXPECT_EQ(core.decide(0.01, eyes_of(pose_at(0.0), core.rig())).fallback, Fallback::stale);
+  core.accept(request_for(core, 0.02, 2, pose_at(0.1)), 0.0, set_of({2}), 0.0);
+  const FrameDecision decision = core.decide(0.01, eyes_of(pose_at(0.0), core.rig()));
+  EXPECT_EQ(decision.visible, set_of({2}));
+  EXPECT_FALSE(decision.last_age_s.has_value());
+  std::vector<Eye> two = eyes_of(pose_at(0.0), core.rig());
+  two.push_back(two.front());
+  EXPECT_EQ(core.decide(0.01, two).fallback, Fallback::stale);
+  Eye broken = two.front();
+  broken.camera_from_world[3][0] = std::nan("");
+  EXPECT_EQ(core.decide(0.01, std::vector<Eye>{broken}).fallback, Fallback::stale);
+}
+
+TEST(CullingCore, ForgetsAllSetsAtAJumpAndAsksForAResetUntilAnAnswer) {
+  CullingCore core({}, one_eye());
+  double now_s = 0.0;
+  core.add_pose({now_s, pose_at(0.0)});
+  const ViewRequest first = core.make_request(now_s, k_size);
+  EXPECT_TRUE(first.reset_filter);  // a new session's filter may hold another camera's counts
+  core.accept(first, now_s, set_of({1}), now_s);
+  const ViewRequest before = core.make_request(now_s, k_size);
+  EXPECT_FALSE(before.reset_filter);
+
+  now_s = 1 / 60.0;
+  core.add_pose({now_s, pose_at(50.0)});
+  const auto eyes = eyes_of(pose_at(50.0), core.rig());
+  EXPECT_EQ(core.decide(now_s, eyes).fallback, Fallback::no_set);
+  core.accept(before, 0.0, set_of({1}), now_s);
+  EXPECT_EQ(core.decide(now_s, eyes).fallback, Fallback::no_set);
+  EXPECT_TRUE(core.make_request(now_s, k_size).reset_filter);  // this one is superseded
+  const ViewRequest after = core.make_request(now_s, k_size);
+  EXPECT_TRUE(after.reset_filter);
+  core.accept(after, now_s, set_of({2}), now_s);
+  EXPECT_FALSE(core.make_request(now_s, k_size).reset_filter);
+  const FrameDecision decision = core.decide(after.for_time_s, eyes);
+  EXPECT_EQ(decision.visible, set_of({2}));
+}
+
+TEST(CullingCore, WidensTheFieldByTheGuardOnlyWhereItPredicts) {
+  const CullingOptions options;
+  CullingCore core(options, one_eye());
+  core.add_pose({0.0, pose_at(0.0)});
+  const ViewRequest first = core.make_request(0.0, k_size);
+  EXPECT_EQ(first.rotation_error_rad, 0.0);
+  core.accept(first, 0.0, set_of({1}), 0.05);
+  EXPECT_GT(core.horizon_s(), 0.05);
+  core.add_pose({0.05, pose_at(0.0)});
+  const ViewRequest second = core.make_request(0.05, k_size);
+  EXPECT_EQ(second.for_time_s, 0.05 + core.horizon_s());
+  EXPECT_EQ(second.rotation_error_rad, options.min_guard_rad);
+  for (int i = 0; i < 20; ++i) core.add_pose({0.1 + i / 60.0, pose_at(0.0, i % 2 == 0 ? 0.0 : 15.0)});
+  EXPECT_EQ(core.make_request(0.1 + 19 / 60.0, k_size).rotation_error_rad, options.max_guard_rad);
+}
+
+TEST(CullingCore, SendsAMoveUntilASetAnswersARequestThatCarriedIt) {
+  CullingCore core({}, one_eye());
+  core.add_pose({0.0, pose_at(0.0)});
+  const ViewRequest before = core.make_request(0.0, k_size);
+  ObjectMove move{ObjectId{7}, glm::dmat4x3(1.0)};
+  core.move_objects({&move, 1});
+  const ViewRequest carrying = core.make_request(0.0, k_size);
+  ASSERT_EQ(carrying.moves.size(), 1u);
+  EXPECT_EQ(carrying.moves[0].id, ObjectId{7});
+  core.accept(before, 0.0, set_of({1}), 0.0);
+  const auto eyes = eyes_of(pose_at(0.0), core.rig());
+  EXPECT_TRUE(core.decide(0.0, eyes).visible.contains(ObjectId{7}));  // that set knows nothing of the move
+  EXPECT_EQ(core.make_request(0.0, k_size).moves.size(), 1u);
+  core.accept(carrying, 0.0, set_of({1}), 0.0);
+  EXPECT_FALSE(core.decide(0.0, eyes).visible.contains(ObjectId{7}));
+  EXPECT_TRUE(core.make_request(0.0, k_size).moves.empty());
+
+  core.forget_sets();  // a daemon that comes back has loaded the scene as it was
+  EXPECT_EQ(core.make_request(0.0, k_size).moves.size(), 1u);
+}
+
+TEST(CullingCore, RefusesWhatIsNotFinite) {
+  CullingCore core({}, one_eye());
+  EXPECT_THROW((void)core.make_request(0.0, k_size), InputError);
+  Pose broken = pose_at(0.0);
+  broken.position_m.y = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(core.add_pose({0.0, broken}), InputError);
+  ObjectMove move{ObjectId{7}, glm::dmat4x3(std::numeric_limits<double>::infinity())};
+  EXPECT_THROW(core.move_objects({&move, 1}), InputError);
+  EXPECT_THROW(CullingCore({}, {}), InputError);
+  CullingOptions options;
+  options.max_guard_rad = 7.0;
+  EXPECT_THROW(CullingCore(options, one_eye()), InputError);
+}
+
+TEST(CullingCore, AsksForBothEyesOfAStereoRig) {
+  std::vector<RigEye> rig(2, one_eye().front());
+  rig[0].camera_from_head[3][0] = 0.032;
+  rig[1].camera_from_head[3][0] = -0.032;
+  CullingCore core({}, rig);
+  core.add_pose({0.0, pose_at(0.0)});
+  const ViewRequest request = core.make_request(0.0, k_size);
+  ASSERT_EQ(request.eyes.size(), 2u);
+  EXPECT_NE(request.eyes[0], request.eyes[1]);
+  core.accept(request, 0.0, set_of({1}), 0.0);
+  EXPECT_TRUE(core.decide(0.0, eyes_of(pose_at(0.0), rig)).field_covered);
+}
+
+}  // namespace
+}  // namespace sightline

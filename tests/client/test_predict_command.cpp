@@ -1,0 +1,79 @@
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "common/camera_path.hpp"
+#include "common/error.hpp"
+#include "main_view/app/predict_command.hpp"
+
+namespace sightline {
+namespace {
+
+class PredictCommand : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
+    folder_ =
+        std::filesystem::path(::testing::TempDir()) / (std::string("sightline_predict_") + info->name());
+    std::filesystem::create_directories(folder_);
+    options_.json = folder_ / "predict.json";
+    options_.traces = {folder_ / "walk.csv"};
+    CameraPath path;
+    for (int i = 0; i < 200; ++i) {
+      const double time_s = i / 60.0 + (i < 100 ? 0.0 : 5.0);  // a pause in the middle
+      path.samples.push_back({time_s, {{1.5 * time_s, 1.7, 0.0}, {1.0, 0.0, 0.0, 0.0}}});
+    }
+    write_camera_path(options_.traces[0], path);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::string error() {
+    try {
+      run_predict(options_);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return {};
+  }
+
+  std::filesystem::path folder_;
+  PredictOptions options_;
+};
+
+TEST_F(PredictCommand, WritesARowForEachTraceHorizonAndPredictor) {
+  options_.horizons = {1, 5};
+  ASSERT_EQ(run_predict(options_), 0);
+  const auto report = nlohmann::json::parse(std::ifstream(options_.json));
+  ASSERT_EQ(report["rows"].size(), 8u);
+  for (const auto& row : report["rows"]) {
+    EXPECT_EQ(row["trace"], "walk");
+    const double frames = row["horizon"];
+    // 1.5 m/s: 25 mm a frame, which only holding the pose misses. Nothing is predicted across the pause.
+    const double expected_mm = row["predictor"] == "hold" ? 25.0 * frames : 0.0;
+    EXPECT_NEAR(row["position_mm_mean"], expected_mm, 0.1) << row.dump();
+    EXPECT_NEAR(row["position_mm_p99"], expected_mm, 0.1);
+    EXPECT_NEAR(row["rotation_deg_p95"], 0.0, 1e-5);
+  }
+}
+
+TEST_F(PredictCommand, NamesTheOptionOrFileThatIsWrong) {
+  options_.horizons = {0};
+  EXPECT_NE(error().find("--horizons"), std::string::npos);
+  options_.horizons = {1};
+  options_.rate_hz = std::nan("");
+  EXPECT_NE(error().find("--rate"), std::string::npos);
+  options_.rate_hz = 60.0;
+  options_.traces = {folder_ / "missing.csv"};
+  EXPECT_NE(error().find("missing.csv"), std::string::npos);
+  options_.traces = {};
+  EXPECT_NE(error().find("--trace"), std::string::npos);
+  SetUp();
+  options_.json = folder_ / "no_such_folder" / "predict.json";
+  EXPECT_NE(error().find("no_such_folder"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace sightline
