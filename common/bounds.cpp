@@ -20,8 +20,8 @@ void Aabb::add(const Aabb& other) noexcept {
 
 Aabb transformed(const Aabb& box, const glm::dmat4& transform) noexcept {
   if (box.empty()) return box;
-  // Arvo, "Transforming Axis-Aligned Bounding Boxes", Graphics Gems, 1990: each output side is the translation
-  // plus, per input axis, the smaller (larger) of the two products.
+  // Arvo, "Transforming Axis-Aligned Bounding Boxes", Graphics Gems, 1990: each output side is the
+  // translation plus, per input axis, the smaller (larger) of the two products.
   glm::dvec3 low(transform[3]);
   glm::dvec3 high = low;
   glm::dvec3 magnitude = glm::abs(low);

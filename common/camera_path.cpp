@@ -49,11 +49,15 @@ TimedPose sample_of(const std::filesystem::path& file, std::size_t line,
   return {v[0], {{v[1], v[2], v[3]}, unit ? rotation : rotation / length}};
 }
 
-bool by_time(const TimedPose& sample, double time_s) { return sample.time_s < time_s; }
+bool by_time(const TimedPose& sample, double time_s) {
+  return sample.time_s < time_s;
+}
 
 }  // namespace
 
-double CameraPath::duration_s() const noexcept { return samples.empty() ? 0.0 : samples.back().time_s; }
+double CameraPath::duration_s() const noexcept {
+  return samples.empty() ? 0.0 : samples.back().time_s;
+}
 
 Pose CameraPath::at(double time_s) const {
   const auto after = std::lower_bound(samples.begin(), samples.end(), time_s - k_same_time_s, by_time);

@@ -8,8 +8,8 @@
 namespace sightline {
 namespace {
 
-/// Where the box's centre lies relative to a plane, how far its corners reach along the normal, and by how much
-/// rounding may have falsified the two together.
+/// Where the box's centre lies relative to a plane, how far its corners reach along the normal, and by how
+/// much rounding may have falsified the two together.
 struct PlaneDistance {
   double center;
   double reach;
@@ -24,7 +24,8 @@ PlaneDistance distance_to(const glm::dvec4& plane, const Aabb& box) noexcept {
   const glm::dvec3 normal(plane);
   const double along = glm::dot(normal, center);
   const double reach = glm::dot(glm::abs(normal), half);
-  return {along + plane.w, reach, 1e-14 * (glm::dot(glm::abs(normal), glm::abs(center)) + reach + std::abs(plane.w))};
+  return {along + plane.w, reach,
+          1e-14 * (glm::dot(glm::abs(normal), glm::abs(center)) + reach + std::abs(plane.w))};
 }
 
 }  // namespace

@@ -24,7 +24,8 @@ struct TestPlane {
   double offset;
 };
 
-/// The same test and the same tolerance as may_intersect and definitely_contains, for the planes in `mask` only.
+/// The same test and the same tolerance as may_intersect and definitely_contains, for the planes in `mask`
+/// only.
 PlaneMask straddled_planes(const std::array<TestPlane, 6>& planes, const Aabb& box, PlaneMask mask) {
   const glm::dvec3 low(box.min);
   const glm::dvec3 high(box.max);
@@ -37,15 +38,16 @@ PlaneMask straddled_planes(const std::array<TestPlane, 6>& planes, const Aabb& b
     const TestPlane& plane = planes[i];
     const double distance = glm::dot(plane.normal, center) + plane.offset;
     const double reach = glm::dot(plane.abs_normal, half);
-    const double rounding =
-        1e-14 * (glm::dot(plane.abs_normal, abs_center) + reach + std::abs(plane.offset));
+    const double rounding = 1e-14 * (glm::dot(plane.abs_normal, abs_center) + reach + std::abs(plane.offset));
     if (distance + reach < -rounding) return k_outside;
     if (distance - reach > rounding) mask &= ~bit;
   }
   return mask;
 }
 
-bool same(const Aabb& a, const Aabb& b) { return a.min == b.min && a.max == b.max; }
+bool same(const Aabb& a, const Aabb& b) {
+  return a.min == b.min && a.max == b.max;
+}
 
 }  // namespace
 

@@ -20,8 +20,9 @@ class ObjectHierarchy {
   /// `bounds[i]` is the world box of ObjectId i. Objects with an empty box are never reported.
   explicit ObjectHierarchy(std::span<const Aabb> bounds);
 
-  /// Replaces the boxes of `ids` (an empty box hides the object, a later one shows it again) and refits. Cost follows the number moved times the depth; the tree's shape
-  /// stays, so a scene that is shuffled completely is better rebuilt.
+  /// Replaces the boxes of `ids` (an empty box hides the object, a later one shows it again) and refits. Cost
+  /// follows the number moved times the depth; the tree's shape stays, so a scene that is shuffled completely
+  /// is better rebuilt.
   void move(std::span<const ObjectId> ids, std::span<const Aabb> bounds);
 
   /// Appends to `out`, in ascending id order, every object that may intersect the frustum.
@@ -30,10 +31,13 @@ class ObjectHierarchy {
 
   [[nodiscard]] const Aabb& bounds_of(ObjectId id) const noexcept { return bounds_[index_of(id)]; }
   [[nodiscard]] std::span<const Aabb> bounds() const noexcept { return bounds_; }
-  [[nodiscard]] std::uint32_t object_count() const noexcept { return static_cast<std::uint32_t>(bounds_.size()); }
+  [[nodiscard]] std::uint32_t object_count() const noexcept {
+    return static_cast<std::uint32_t>(bounds_.size());
+  }
 
  private:
-  /// Nodes lie in depth-first order: a node's left child follows it. Every subtree's objects are one run of order_.
+  /// Nodes lie in depth-first order: a node's left child follows it. Every subtree's objects are one run of
+  /// order_.
   struct Node {
     Aabb box;
     std::uint32_t right = 0;  ///< index of the right child, 0 for a leaf

@@ -10,9 +10,10 @@ namespace sightline {
 
 /// Builds the nodes of an ObjectHierarchy, top down, without recursion.
 ///
-/// Source: Wald, "On fast Construction of SAH-based Bounding Volume Hierarchies", 2007. We bin along the widest
-/// axis of the centroids only, as the paper's fast variant does, and cut by count below a depth at which only a
-/// pathological spread of sizes would still be unsplit; the depth of the tree is therefore bounded by k_max_depth.
+/// Source: Wald, "On fast Construction of SAH-based Bounding Volume Hierarchies", 2007. We bin along the
+/// widest axis of the centroids only, as the paper's fast variant does, and cut by count below a depth at
+/// which only a pathological spread of sizes would still be unsplit; the depth of the tree is therefore
+/// bounded by k_max_depth.
 class ObjectHierarchyBuilder {
  public:
   static constexpr std::uint32_t k_max_leaf_objects = 4;

@@ -6,7 +6,8 @@
 
 namespace sightline {
 
-/// 128 bits that both processes compare: equal when geometry, materials, transforms and object order are equal.
+/// 128 bits that both processes compare: equal when geometry, materials, transforms and object order are
+/// equal.
 using SceneDigest = std::array<std::uint8_t, 16>;
 
 /// 32 lower-case hexadecimal digits.

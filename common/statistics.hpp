@@ -14,12 +14,13 @@ namespace sightline {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-/// Nearest-rank quantile: the smallest value that at least `share` of the values do not exceed. `share` in [0, 1];
-/// 0 of nothing.
+/// Nearest-rank quantile: the smallest value that at least `share` of the values do not exceed. `share` in
+/// [0, 1]; 0 of nothing.
 [[nodiscard]] inline double quantile_of(std::vector<double> values, double share) {
   if (values.empty()) return 0.0;
   const double rank = std::ceil(share * static_cast<double>(values.size()));
-  const auto index = static_cast<std::size_t>(std::clamp(rank - 1.0, 0.0, static_cast<double>(values.size() - 1)));
+  const auto index =
+      static_cast<std::size_t>(std::clamp(rank - 1.0, 0.0, static_cast<double>(values.size() - 1)));
   std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(index), values.end());
   return values[index];
 }

@@ -22,11 +22,11 @@ std::optional<std::uint32_t> parse_side(std::string_view text) {
 
 /// Tangent of a field's edge after it has moved outwards.
 ///
-/// `edge` is the tangent of the edge on its own side (positive outwards), `across` the largest tangent along it.
-/// A cap of `angle_rad` around a direction reaches asin(sin(angle) / cos(elevation)) in azimuth, where elevation
-/// is measured from the plane the azimuth turns in. Along the edge that is largest at the corner; away from the
-/// edge the reach's growth never outruns the azimuth lost while the sum is below 90 degrees, since its slope is
-/// at most tan(reach) * tan(azimuth) times the azimuth's.
+/// `edge` is the tangent of the edge on its own side (positive outwards), `across` the largest tangent along
+/// it. A cap of `angle_rad` around a direction reaches asin(sin(angle) / cos(elevation)) in azimuth, where
+/// elevation is measured from the plane the azimuth turns in. Along the edge that is largest at the corner;
+/// away from the edge the reach's growth never outruns the azimuth lost while the sum is below 90 degrees,
+/// since its slope is at most tan(reach) * tan(azimuth) times the azimuth's.
 double widened_edge(double edge, double across, double angle_rad) {
   const double stretch = std::sqrt(1.0 + across * across / (1.0 + edge * edge));
   const double sine = angle_rad < k_widest_edge_rad ? std::sin(angle_rad) * stretch : 1.0;
@@ -42,7 +42,7 @@ void widen_depth(glm::dmat4& matrix, double corner_tangent, double angle_rad) {
   const double far_m = matrix[3][2] / (matrix[2][2] + 1.0);
   const bool infinite = std::abs(matrix[2][2] + 1.0) < 1e-12;
   if (!(near_m > 0.0) || !(infinite || far_m > near_m)) return;  // not the depth convention we know
-  constexpr double k_least_ratio = 0.1;                          // keeps depth precision where the angle is extreme
+  constexpr double k_least_ratio = 0.1;  // keeps depth precision where the angle is extreme
   const double corner_rad = std::atan(corner_tangent);
   const double closer = std::max(k_least_ratio, std::cos(corner_rad + angle_rad) / std::cos(corner_rad));
   const double wide_near_m = near_m * std::min(1.0, closer);

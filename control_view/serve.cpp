@@ -4,9 +4,9 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
-#include <optional>
-#include <string_view>
+#include <string>
 #include <thread>
+#include <utility>
 
 #include <malloc.h>
 #include <spdlog/sinks/stdout_sinks.h>
@@ -82,16 +82,24 @@ class Announcement {
   std::string file_;
 };
 
-void remove_socket_file(const std::string& endpoint) {
-  constexpr std::string_view k_scheme = "ipc://";
-  std::error_code ignored;
-  if (endpoint.starts_with(k_scheme)) std::filesystem::remove(endpoint.substr(k_scheme.size()), ignored);
-}
+/// Removes the path of an ipc:// endpoint, which libzmq leaves behind now and then. Declare it before the
+/// link.
+struct SocketFile {
+  std::string endpoint;
+  SocketFile() = default;
+  SocketFile(const SocketFile&) = delete;
+  SocketFile& operator=(const SocketFile&) = delete;
+  ~SocketFile() {
+    const std::string scheme = "ipc://";
+    std::error_code ignored;
+    if (endpoint.starts_with(scheme)) std::filesystem::remove(endpoint.substr(scheme.size()), ignored);
+  }
+};
 
-/// Runs the service until a signal; everything that needs the link is gone when it returns.
-void serve_on(const std::string& endpoint, ServerLink& link, Served& served, const DaemonOptions& options,
-              const StopSignal& stop) {
+/// Runs the service until a signal.
+void serve_on(ServerLink& link, Served& served, const DaemonOptions& options, const StopSignal& stop) {
   Service service(link, *served.engine, served.scene, service_options(options), steady_clock());
+  const std::string endpoint = link.bound_endpoint();
   const Announcement announcement(options.announce, endpoint);
   std::printf("control_view: listening on %s\n", endpoint.c_str());
   std::fflush(stdout);
@@ -117,17 +125,15 @@ void serve(const DaemonOptions& options) {
     throw InputError("no scene given: use --scene FILE or `scene` in the config file");
   (void)find_engine(options.engine);
 
-  // Checked before the scene is loaded, which may take long: keys and endpoint.
-  const LinkOptions link_settings = link_options(options);
-  std::optional<ServerLink> link;
-  link.emplace(options.bind, link_settings);
-  const std::string endpoint = link->bound_endpoint();
+  const LinkOptions settings = link_options(options);
 
   Served served = make_served(options);
+  // Bound only now: whoever can connect is answered at once, and until now a signal had nothing to clean up.
   stop.defer();
-  serve_on(endpoint, *link, served, options, stop);
-  link.reset();
-  remove_socket_file(endpoint);
+  SocketFile socket_file;
+  ServerLink link(options.bind, settings);
+  socket_file.endpoint = link.bound_endpoint();
+  serve_on(link, served, options, stop);
 }
 
 }  // namespace sightline

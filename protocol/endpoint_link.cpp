@@ -21,6 +21,9 @@ constexpr int k_handshake_timeout_ms = 5000;
 constexpr int k_transport_heartbeat_ms = 1000;
 constexpr int k_transport_timeout_ms = 5000;
 
+/// How long a closing link may wait for its last frames (a Goodbye, a Refusal because we shut down) to leave.
+constexpr int k_farewell_ms = 100;
+
 /// Malformed messages that one call of receive throws away before it lets the caller go on.
 constexpr int k_max_dropped_in_a_row = 64;
 
@@ -43,7 +46,7 @@ void set_key(zmq::socket_t& socket, Option option, const std::string& key, const
 }
 
 void set_common_options(zmq::socket_t& socket, const Endpoint& endpoint, const LinkOptions& options) {
-  socket.set(zmq::sockopt::linger, 0);
+  socket.set(zmq::sockopt::linger, k_farewell_ms);
   socket.set(zmq::sockopt::maxmsgsize, static_cast<std::int64_t>(options.max_frame_bytes));
   // Zero would mean "no limit" to ZeroMQ.
   socket.set(zmq::sockopt::sndhwm, std::max(1, options.send_queue_length));
@@ -180,6 +183,7 @@ std::optional<Bytes> ClientLink::receive(milliseconds timeout) {
 }
 
 void ClientLink::reconnect() {
+  impl_->socket.set(zmq::sockopt::linger, 0);
   impl_->socket.close();
   impl_->connect();
 }

@@ -22,7 +22,8 @@ struct LinkOptions {
 };
 
 /// The client's end: one DEALER socket. ZeroMQ reconnects by itself; this only moves frames.
-/// Not thread-safe; no call blocks longer than its timeout.
+/// Not thread-safe; no call blocks longer than its timeout. Destruction gives frames on their way 0.1 s to
+/// leave.
 class ClientLink {
  public:
   /// Returns at once, whether or not anybody listens there. Throws InputError for an endpoint that is no
@@ -51,7 +52,8 @@ class ClientLink {
 /// Routing id of one connection. A client that reconnects has another.
 using PeerId = std::string;
 
-/// The daemon's end: one ROUTER socket. Not thread-safe.
+/// The daemon's end: one ROUTER socket. Not thread-safe. Destruction gives frames on their way 0.1 s to
+/// leave.
 class ServerLink {
  public:
   /// `endpoint` may hold a wildcard port (tcp://127.0.0.1:*). Throws InputError for a bad address and

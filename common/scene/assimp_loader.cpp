@@ -3,11 +3,11 @@
 #include <map>
 #include <vector>
 
+#include <assimp/Importer.hpp>
 #include <assimp/config.h>
 #include <assimp/material.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
-#include <assimp/Importer.hpp>
 
 #include "common/scene/refuse_scene.hpp"
 
@@ -34,7 +34,8 @@ Material material_of(const aiMaterial& source) {
 glm::dmat4 matrix_of(const aiMatrix4x4& m) {
   glm::dmat4 matrix;
   for (unsigned row = 0; row < 4; ++row) {
-    for (unsigned column = 0; column < 4; ++column) matrix[static_cast<int>(column)][static_cast<int>(row)] = m[row][column];
+    for (unsigned column = 0; column < 4; ++column)
+      matrix[static_cast<int>(column)][static_cast<int>(row)] = m[row][column];
   }
   return matrix;
 }
@@ -45,7 +46,8 @@ class Conversion {
       : source_(source), options_(options), name_(name) {}
 
   Scene run() {
-    for (unsigned i = 0; i < source_.mNumMaterials; ++i) scene_.materials.push_back(material_of(*source_.mMaterials[i]));
+    for (unsigned i = 0; i < source_.mNumMaterials; ++i)
+      scene_.materials.push_back(material_of(*source_.mMaterials[i]));
     if (scene_.materials.empty()) scene_.materials.emplace_back();
     for (unsigned i = 0; i < source_.mNumMeshes; ++i) append_geometry(*source_.mMeshes[i], i);
     walk();
@@ -77,8 +79,8 @@ class Conversion {
       }
     }
     const unsigned material = mesh.mMaterialIndex < scene_.materials.size() ? mesh.mMaterialIndex : 0;
-    runs_.push_back({static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(scene_.indices.size() - first),
-                     material});
+    runs_.push_back({static_cast<std::uint32_t>(first),
+                     static_cast<std::uint32_t>(scene_.indices.size() - first), material});
   }
 
   void append_shading(const aiMesh& mesh, std::size_t base) {
@@ -102,7 +104,8 @@ class Conversion {
         scene_.objects.push_back({mesh_of(*next.node), world});
         if (options_.shading) scene_.object_names.emplace_back(next.node->mName.C_Str());
       }
-      for (unsigned i = next.node->mNumChildren; i-- > 0;) pending.push_back({next.node->mChildren[i], world});
+      for (unsigned i = next.node->mNumChildren; i-- > 0;)
+        pending.push_back({next.node->mChildren[i], world});
     }
     if (!scene_.normals.empty()) scene_.normals.resize(scene_.positions.size(), glm::vec3(0.0f));
   }

@@ -155,13 +155,15 @@ CityShapes add_city_shapes(Scene& scene, float pitch_m) {
   shape.add_box({-4, 0, -k_across}, {4, 11, k_across});
   shapes.bridge = shape.close_mesh();
 
-  const glm::vec3 walls[] = {{0.7f, 0.45f, 0.35f}, {0.75f, 0.7f, 0.55f}, {0.55f, 0.6f, 0.65f}, {0.6f, 0.35f, 0.3f}};
+  const glm::vec3 walls[] = {
+      {0.7f, 0.45f, 0.35f}, {0.75f, 0.7f, 0.55f}, {0.55f, 0.6f, 0.65f}, {0.6f, 0.35f, 0.3f}};
   for (const glm::vec3& color : walls) {
     const std::uint32_t wall = add_material(scene, color);
     for (const int floors : {5, 8, 11, 14}) shapes.buildings.push_back(building(shape, wall, trim, floors));
   }
   const glm::vec3 paints[] = {{0.7f, 0.1f, 0.1f}, {0.1f, 0.2f, 0.6f}, {0.8f, 0.8f, 0.8f}};
-  for (const glm::vec3& color : paints) shapes.cars.push_back(car(shape, add_material(scene, color), metal, glass));
+  for (const glm::vec3& color : paints)
+    shapes.cars.push_back(car(shape, add_material(scene, color), metal, glass));
   shapes.trees.push_back(tree(shape, bark, leaves, foliage));
   shapes.window = window(shape, trim, glass);
   shapes.balcony = balcony(shape, metal);

@@ -8,8 +8,8 @@
 
 namespace sightline {
 
-/// The meshes of a generated city. Every object is an instance of one of them, so that a city of any size holds
-/// the same few thousand vertices. Metres; each stands on y = 0 about the origin.
+/// The meshes of a generated city. Every object is an instance of one of them, so that a city of any size
+/// holds the same few thousand vertices. Metres; each stands on y = 0 about the origin.
 struct CityShapes {
   static constexpr float k_building_side_m = 20.0f;
   static constexpr float k_street_width_m = 14.0f;

@@ -35,18 +35,24 @@ bool is_affine_and_finite(const glm::dmat4& m) {
   return m[0][3] == 0.0 && m[1][3] == 0.0 && m[2][3] == 0.0 && m[3][3] == 1.0;
 }
 
-std::string numbered(const char* what, std::size_t index) { return std::string(what) + " " + std::to_string(index); }
+std::string numbered(const char* what, std::size_t index) {
+  return std::string(what) + " " + std::to_string(index);
+}
 
 void check_vertices(const Scene& scene, const std::string& name) {
   const std::size_t count = scene.positions.size();
-  if (count > std::numeric_limits<std::uint32_t>::max()) refuse_scene(name, "has more than 2^32 vertices; split it");
-  if (!scene.normals.empty() && scene.normals.size() != count) refuse_scene(name, "has not one normal a vertex");
+  if (count > std::numeric_limits<std::uint32_t>::max())
+    refuse_scene(name, "has more than 2^32 vertices; split it");
+  if (!scene.normals.empty() && scene.normals.size() != count)
+    refuse_scene(name, "has not one normal a vertex");
   if (!scene.uvs.empty() && scene.uvs.size() != count) {
     refuse_scene(name, "has not one texture coordinate a vertex");
   }
-  if (!all_finite(scene.positions)) refuse_scene(name, "a vertex position is not a finite number; repair the file");
+  if (!all_finite(scene.positions))
+    refuse_scene(name, "a vertex position is not a finite number; repair the file");
   if (!all_finite(scene.normals)) refuse_scene(name, "a normal is not a finite number; repair the file");
-  if (!all_finite(scene.uvs)) refuse_scene(name, "a texture coordinate is not a finite number; repair the file");
+  if (!all_finite(scene.uvs))
+    refuse_scene(name, "a texture coordinate is not a finite number; repair the file");
 }
 
 void check_materials(const Scene& scene, const std::string& name) {
@@ -87,8 +93,8 @@ void check_meshes(const Scene& scene, const std::string& name) {
     std::uint32_t largest = 0;
     for (std::uint64_t k = primitive.first_index; k < end; ++k) largest = std::max(largest, scene.indices[k]);
     if (primitive.index_count > 0 && largest >= vertex_count) {
-      refuse_scene(name, numbered("primitive", i) + ": index " + std::to_string(largest) + " is out of range (" +
-                             std::to_string(vertex_count) + " vertices)");
+      refuse_scene(name, numbered("primitive", i) + ": index " + std::to_string(largest) +
+                             " is out of range (" + std::to_string(vertex_count) + " vertices)");
     }
   }
 }
@@ -123,9 +129,11 @@ void bound_meshes(Scene& scene) {
   }
 }
 
-/// Moves the scene frame when the scene lies far from the world's origin, where floats have no millimetres left.
+/// Moves the scene frame when the scene lies far from the world's origin, where floats have no millimetres
+/// left.
 void move_origin_near(Scene& scene) {
   constexpr double k_far_m = 1000.0;
+  constexpr double k_absurd_m = 1e12;
   if (scene.world_origin_m != glm::dvec3(0.0)) return;
   glm::dvec3 low(std::numeric_limits<double>::infinity());
   glm::dvec3 high = -low;
@@ -135,13 +143,14 @@ void move_origin_near(Scene& scene) {
     const glm::dvec3 center = object.scene_from_object * glm::dvec4(glm::dvec3(box.center()), 1.0);
     const glm::dmat3 turn(object.scene_from_object);
     const glm::dvec3 half(0.5f * box.extent());
-    const glm::dvec3 reach = glm::abs(turn[0]) * half.x + glm::abs(turn[1]) * half.y + glm::abs(turn[2]) * half.z;
+    const glm::dvec3 reach =
+        glm::abs(turn[0]) * half.x + glm::abs(turn[1]) * half.y + glm::abs(turn[2]) * half.z;
     low = glm::min(low, center - reach);
     high = glm::max(high, center + reach);
   }
   const glm::dvec3 center = glm::round(0.5 * (low + high));
   const double furthest = std::max({std::abs(center.x), std::abs(center.y), std::abs(center.z)});
-  if (!(furthest > k_far_m) || !std::isfinite(furthest)) return;
+  if (!(furthest > k_far_m) || !(furthest < k_absurd_m)) return;  // the bounds refuse what is absurd
   scene.world_origin_m = center;
   for (Object& object : scene.objects) {
     object.scene_from_object[3] -= glm::dvec4(center, 0.0);
@@ -159,7 +168,8 @@ void bound_objects(Scene& scene, const std::string& name) {
     const Object& object = scene.objects[i];
     const Aabb box = transformed(scene.meshes[object.mesh].bounds, object.scene_from_object);
     if (!box.empty() && !finite(box)) {
-      refuse_scene(name, numbered("object", i) + ": lies beyond the range of a float; scale the scene to metres");
+      refuse_scene(name,
+                   numbered("object", i) + ": lies beyond the range of a float; scale the scene to metres");
     }
     scene.object_bounds[i] = box;
     scene.bounds.add(box);

@@ -46,7 +46,8 @@ class Plan {
 
   [[nodiscard]] glm::dvec2 center(const Block& block) const {
     const double shift = block.row % 2 == 0 ? 0.0 : 0.5;
-    return {k_pitch_m * (block.column + shift - 0.5 * (columns_ - 1)), k_pitch_m * (block.row - 0.5 * (rows_ - 1))};
+    return {k_pitch_m * (block.column + shift - 0.5 * (columns_ - 1)),
+            k_pitch_m * (block.row - 0.5 * (rows_ - 1))};
   }
 
   /// Whether a bridge house closes the street on the block's -z side, in front of the block's middle.
@@ -108,8 +109,8 @@ class BlockBuilder {
     }
   }
 
-  /// A point `out_m` in front of one of the block's four sides, `along_m` from its middle, and the yaw that turns
-  /// +z away from the wall.
+  /// A point `out_m` in front of one of the block's four sides, `along_m` from its middle, and the yaw that
+  /// turns +z away from the wall.
   struct Spot {
     Offset at;
     double yaw_rad;
@@ -182,9 +183,9 @@ CameraPath city_path(std::uint32_t object_count, std::uint64_t) {
   const Plan plan(object_count);
   const glm::dvec2 center = plan.center(plan.walked());
   constexpr double k_half = k_pitch_m / 2;
-  const std::array<glm::dvec2, 4> corners{center + glm::dvec2(-k_half, k_half), center + glm::dvec2(k_half, k_half),
-                                          center + glm::dvec2(k_half, -k_half),
-                                          center + glm::dvec2(-k_half, -k_half)};
+  const std::array<glm::dvec2, 4> corners{
+      center + glm::dvec2(-k_half, k_half), center + glm::dvec2(k_half, k_half),
+      center + glm::dvec2(k_half, -k_half), center + glm::dvec2(-k_half, -k_half)};
   return walk_round(corners);
 }
 

@@ -45,8 +45,9 @@ std::uint32_t add_material(Scene& scene, const glm::vec3& color) {
 /// About 130 triangles.
 std::uint32_t figure(ShapeBuilder& shape, std::uint32_t coat, std::uint32_t skin, float height) {
   const float h = height / 1.75f;
-  const glm::vec2 body[] = {{0, 0},           {0.16f * h, 0.02f},    {0.2f * h, 0.8f * h},
-                            {0.26f * h, 1.3f * h}, {0.1f * h, 1.48f * h}, {0, 1.5f * h}};
+  const glm::vec2 body[] = {
+      {0, 0},       {0.16f * h, 0.02f}, {0.2f * h, 0.8f * h}, {0.26f * h, 1.3f * h}, {0.1f * h, 1.48f * h},
+      {0, 1.5f * h}};
   const glm::vec2 head[] = {{0, 1.48f * h}, {0.1f * h, 1.56f * h}, {0.1f * h, 1.68f * h}, {0, 1.75f * h}};
   shape.begin_material(coat);
   shape.add_lathe(glm::vec3(0), body, 11);
@@ -74,9 +75,11 @@ CrowdShapes add_shapes(Scene& scene) {
   shape.begin_material(stone);
   shape.add_lathe(glm::vec3(0), column, 20);
   shapes.column = shape.close_mesh();
-  for (const glm::vec3& color : {glm::vec3{0.2f, 0.25f, 0.5f}, {0.5f, 0.2f, 0.2f}, {0.2f, 0.4f, 0.25f}, {0.2f, 0.2f, 0.2f}}) {
+  for (const glm::vec3& color :
+       {glm::vec3{0.2f, 0.25f, 0.5f}, {0.5f, 0.2f, 0.2f}, {0.2f, 0.4f, 0.25f}, {0.2f, 0.2f, 0.2f}}) {
     const std::uint32_t coat = add_material(scene, color);
-    for (const float height : {1.6f, 1.75f, 1.9f}) shapes.figures.push_back(figure(shape, coat, skin, height));
+    for (const float height : {1.6f, 1.75f, 1.9f})
+      shapes.figures.push_back(figure(shape, coat, skin, height));
   }
   return shapes;
 }
@@ -95,11 +98,14 @@ class Plan {
   }
   [[nodiscard]] Court court(std::uint32_t index) const { return {index / columns_, index % columns_}; }
   /// The first of the four courts that the walk goes round.
-  [[nodiscard]] Court walked() const { return {rows_ < 2 ? 0 : rows_ / 2 - 1, columns_ < 2 ? 0 : columns_ / 2 - 1}; }
+  [[nodiscard]] Court walked() const {
+    return {rows_ < 2 ? 0 : rows_ / 2 - 1, columns_ < 2 ? 0 : columns_ / 2 - 1};
+  }
   [[nodiscard]] glm::dvec2 center(const Court& court) const {
     return {k_court_m * (court.column - 0.5 * columns_), k_court_m * (court.row - 0.5 * rows_)};
   }
-  /// Where the gap in the wall at a court's -x (axis 0) or -z (axis 1) side lies, along the wall from its middle.
+  /// Where the gap in the wall at a court's -x (axis 0) or -z (axis 1) side lies, along the wall from its
+  /// middle.
   static double gap_offset(const Court& court, int axis) {
     const std::uint32_t along = axis == 0 ? court.column : court.row;
     return along % 2 == 0 ? k_gap_offset_m : -k_gap_offset_m;
@@ -142,7 +148,8 @@ class CourtBuilder {
       const glm::dvec2 offset(random.between(-0.46, 0.46), random.between(-0.46, 0.46));
       const glm::dvec2 at = center + k_court_m * offset;
       if (on_lane(court, center, at)) continue;
-      const std::uint32_t mesh = shapes_.figures[random.below(static_cast<std::uint32_t>(shapes_.figures.size()))];
+      const std::uint32_t mesh =
+          shapes_.figures[random.below(static_cast<std::uint32_t>(shapes_.figures.size()))];
       place(mesh, at, random.between(0.0, 2.0 * glm::pi<double>()));
     }
   }
@@ -156,7 +163,8 @@ class CourtBuilder {
     scene_.objects.push_back({mesh, yaw_rad == 0.0 ? moved : glm::rotate(moved, yaw_rad, {0.0, 1.0, 0.0})});
   }
 
-  /// Two parts of a wall with a gap between them on the -x and -z sides; the other two belong to the neighbours.
+  /// Two parts of a wall with a gap between them on the -x and -z sides; the other two belong to the
+  /// neighbours.
   void add_walls(const Court& court, const glm::dvec2& center) {
     constexpr double k_half = k_court_m / 2;
     for (const int axis : {0, 1}) {
@@ -177,7 +185,8 @@ class CourtBuilder {
   [[nodiscard]] bool on_lane(const Court& court, const glm::dvec2& center, const glm::dvec2& at) const {
     const Court right{court.row, court.column + 1};
     const Court below{court.row + 1, court.column};
-    for (const glm::dvec2& gap : {plan_.gap(court, 0), plan_.gap(court, 1), plan_.gap(right, 0), plan_.gap(below, 1)}) {
+    for (const glm::dvec2& gap :
+         {plan_.gap(court, 0), plan_.gap(court, 1), plan_.gap(right, 0), plan_.gap(below, 1)}) {
       if (distance_to_segment(at, center, gap) < k_lane_m) return true;
     }
     return false;

@@ -56,18 +56,22 @@ void with_float_reader(int component_type, bool normalized, Visit visit) {
   // glTF 2.0, 3.6.2.2: signed types scale by their largest value and clamp at -1.
   switch (component_type) {
     case TINYGLTF_COMPONENT_TYPE_BYTE:
-      return normalized ? visit([](const std::uint8_t* p) { return std::max(load<std::int8_t>(p) / 127.0f, -1.0f); })
-                        : visit([](const std::uint8_t* p) { return static_cast<float>(load<std::int8_t>(p)); });
+      return normalized
+                 ? visit([](const std::uint8_t* p) { return std::max(load<std::int8_t>(p) / 127.0f, -1.0f); })
+                 : visit([](const std::uint8_t* p) { return static_cast<float>(load<std::int8_t>(p)); });
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
       return normalized ? visit([](const std::uint8_t* p) { return *p / 255.0f; })
                         : visit([](const std::uint8_t* p) { return static_cast<float>(*p); });
     case TINYGLTF_COMPONENT_TYPE_SHORT:
       return normalized
-                 ? visit([](const std::uint8_t* p) { return std::max(load<std::int16_t>(p) / 32767.0f, -1.0f); })
+                 ? visit([](const std::uint8_t* p) {
+                     return std::max(load<std::int16_t>(p) / 32767.0f, -1.0f);
+                   })
                  : visit([](const std::uint8_t* p) { return static_cast<float>(load<std::int16_t>(p)); });
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-      return normalized ? visit([](const std::uint8_t* p) { return load<std::uint16_t>(p) / 65535.0f; })
-                        : visit([](const std::uint8_t* p) { return static_cast<float>(load<std::uint16_t>(p)); });
+      return normalized
+                 ? visit([](const std::uint8_t* p) { return load<std::uint16_t>(p) / 65535.0f; })
+                 : visit([](const std::uint8_t* p) { return static_cast<float>(load<std::uint16_t>(p)); });
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
       return visit([](const std::uint8_t* p) { return static_cast<float>(load<std::uint32_t>(p)); });
     default:
@@ -94,11 +98,14 @@ bool is_index_type(int component_type) {
          component_type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
 }
 
-std::string accessor_name(int accessor) { return "accessor " + std::to_string(accessor); }
+std::string accessor_name(int accessor) {
+  return "accessor " + std::to_string(accessor);
+}
 
 }  // namespace
 
-GltfAccessors::GltfAccessors(const tinygltf::Model& model, const std::string& name) : model_(model), name_(name) {
+GltfAccessors::GltfAccessors(const tinygltf::Model& model, const std::string& name)
+    : model_(model), name_(name) {
   for (const tinygltf::Buffer& buffer : model.buffers) buffer_bytes_ += buffer.data.size();
 }
 
@@ -112,14 +119,15 @@ std::span<const std::uint8_t> GltfAccessors::view(int buffer_view, const std::st
   }
   const std::vector<unsigned char>& data = model_.buffers[static_cast<std::size_t>(view.buffer)].data;
   if (view.byteOffset > data.size() || view.byteLength > data.size() - view.byteOffset) {
-    refuse_scene(name_, what + ": its buffer view " + std::to_string(buffer_view) + " reaches beyond buffer " +
-                            std::to_string(view.buffer) + " (" + std::to_string(data.size()) + " bytes)");
+    refuse_scene(name_, what + ": its buffer view " + std::to_string(buffer_view) +
+                            " reaches beyond buffer " + std::to_string(view.buffer) + " (" +
+                            std::to_string(data.size()) + " bytes)");
   }
   return std::span<const std::uint8_t>(data).subspan(view.byteOffset, view.byteLength);
 }
 
-GltfAccessors::Elements GltfAccessors::elements_in_view(int buffer_view, std::size_t offset, std::size_t count,
-                                                        int component_type, int components,
+GltfAccessors::Elements GltfAccessors::elements_in_view(int buffer_view, std::size_t offset,
+                                                        std::size_t count, int component_type, int components,
                                                         const std::string& what) const {
   const std::span<const std::uint8_t> bytes = view(buffer_view, what);
   const std::size_t element = component_bytes(component_type) * static_cast<std::size_t>(components);
@@ -176,7 +184,8 @@ void GltfAccessors::read_floats(int accessor, int components, float* out) const 
   } else {
     with_float_reader(source.component_type, source.normalized, [&](auto read) {
       for (std::size_t i = 0; i < source.count; ++i) {
-        for (std::size_t c = 0; c < width; ++c) out[i * width + c] = read(source.data + i * source.stride + c * step);
+        for (std::size_t c = 0; c < width; ++c)
+          out[i * width + c] = read(source.data + i * source.stride + c * step);
       }
     });
   }
@@ -190,17 +199,19 @@ void GltfAccessors::read_floats(int accessor, int components, float* out) const 
   }
   const auto count = static_cast<std::size_t>(a.sparse.count);
   const Elements indices =
-      elements_in_view(a.sparse.indices.bufferView, static_cast<std::size_t>(a.sparse.indices.byteOffset), count,
-                       a.sparse.indices.componentType, 1, what + " indices");
+      elements_in_view(a.sparse.indices.bufferView, static_cast<std::size_t>(a.sparse.indices.byteOffset),
+                       count, a.sparse.indices.componentType, 1, what + " indices");
   const Elements values =
-      elements_in_view(a.sparse.values.bufferView, static_cast<std::size_t>(a.sparse.values.byteOffset), count,
-                       a.componentType, components, what + " values");
+      elements_in_view(a.sparse.values.bufferView, static_cast<std::size_t>(a.sparse.values.byteOffset),
+                       count, a.componentType, components, what + " values");
   with_index_reader(indices.component_type, [&](auto read_index) {
     with_float_reader(values.component_type, source.normalized, [&](auto read) {
       for (std::size_t i = 0; i < count; ++i) {
         const std::uint32_t index = read_index(indices.data + i * indices.stride);
-        if (index >= source.count) refuse_scene(name_, what + " index " + std::to_string(index) + " is out of range");
-        for (std::size_t c = 0; c < width; ++c) out[index * width + c] = read(values.data + i * values.stride + c * step);
+        if (index >= source.count)
+          refuse_scene(name_, what + " index " + std::to_string(index) + " is out of range");
+        for (std::size_t c = 0; c < width; ++c)
+          out[index * width + c] = read(values.data + i * values.stride + c * step);
       }
     });
   });
@@ -228,8 +239,8 @@ void GltfAccessors::append_indices(int accessor, std::uint32_t base, std::size_t
     }
   });
   if (source.count > 0 && largest >= vertex_count) {
-    refuse_scene(name_, accessor_name(accessor) + ": index " + std::to_string(largest) + " is out of range (" +
-                            std::to_string(vertex_count) + " vertices)");
+    refuse_scene(name_, accessor_name(accessor) + ": index " + std::to_string(largest) +
+                            " is out of range (" + std::to_string(vertex_count) + " vertices)");
   }
 }
 

@@ -10,18 +10,20 @@
 
 namespace sightline {
 
-/// Typed reading of a model's accessors. tinygltf checks none of the numbers an accessor, view or buffer claims:
-/// every one is checked here before a byte is read. All members throw InputError prefixed with the file's name.
+/// Typed reading of a model's accessors. tinygltf checks none of the numbers an accessor, view or buffer
+/// claims: every one is checked here before a byte is read. All members throw InputError prefixed with the
+/// file's name.
 class GltfAccessors {
  public:
   /// Refers to both for its lifetime.
   GltfAccessors(const tinygltf::Model& model, const std::string& name);
 
-  /// Elements of an accessor, after checking that it exists, is of the `components` wanted and lies in its buffer.
+  /// Elements of an accessor, after checking that it exists, is of the `components` wanted and lies in its
+  /// buffer.
   [[nodiscard]] std::size_t count(int accessor, int components) const;
 
-  /// Appends every element as floats: normalised integers as the specification scales them, other integers as they
-  /// are, sparse replacements applied. `components` is 1 to 4; Vector has as many floats.
+  /// Appends every element as floats: normalised integers as the specification scales them, other integers as
+  /// they are, sparse replacements applied. `components` is 1 to 4; Vector has as many floats.
   template <class Vector>
   void append_floats(int accessor, std::vector<Vector>& out) const {
     const std::size_t first = out.size();

@@ -21,13 +21,14 @@ std::uint32_t word_at(std::span<const std::uint8_t> bytes, std::size_t offset) {
   return p[0] | (std::uint32_t{p[1]} << 8) | (std::uint32_t{p[2]} << 16) | (std::uint32_t{p[3]} << 24);
 }
 
-std::span<const std::uint8_t> take_chunk(std::span<const std::uint8_t>& rest, std::uint32_t type, const char* label,
-                                         const std::string& name) {
+std::span<const std::uint8_t> take_chunk(std::span<const std::uint8_t>& rest, std::uint32_t type,
+                                         const char* label, const std::string& name) {
   if (rest.size() < k_chunk_header_bytes) {
     refuse_scene(name, std::string("is truncated before its ") + label + " chunk");
   }
   const std::uint32_t length = word_at(rest, 0);
-  if (word_at(rest, 4) != type) refuse_scene(name, std::string("has no ") + label + " chunk where one must be");
+  if (word_at(rest, 4) != type)
+    refuse_scene(name, std::string("has no ") + label + " chunk where one must be");
   if (length > rest.size() - k_chunk_header_bytes) {
     refuse_scene(name, std::string("its ") + label + " chunk claims " + std::to_string(length) + " bytes, " +
                            std::to_string(rest.size() - k_chunk_header_bytes) + " are left");
@@ -110,14 +111,17 @@ void refuse_copied_chunk(std::string_view json, const std::string& name) {
                          !buffer["uri"].get_ref<const std::string&>().empty();
     without_uri += has_uri ? 0 : 1;
   }
-  if (without_uri > 1) refuse_scene(name, "several buffers have no uri; only the first may, and take the BIN chunk");
+  if (without_uri > 1)
+    refuse_scene(name, "several buffers have no uri; only the first may, and take the BIN chunk");
 }
 
 }  // namespace
 
-GltfContainer open_gltf_container(std::span<const std::uint8_t> bytes, bool expect_binary, const std::string& name) {
+GltfContainer open_gltf_container(std::span<const std::uint8_t> bytes, bool expect_binary,
+                                  const std::string& name) {
   const bool is_binary = bytes.size() >= 4 && word_at(bytes, 0) == k_magic;
-  if (expect_binary && !is_binary) refuse_scene(name, "does not begin with the glTF magic; is it a .glb file?");
+  if (expect_binary && !is_binary)
+    refuse_scene(name, "does not begin with the glTF magic; is it a .glb file?");
   GltfContainer container{false, {reinterpret_cast<const char*>(bytes.data()), bytes.size()}, {}};
   if (is_binary) container = open_binary(bytes, name);
   const JsonShape shape = shape_of(container.json);

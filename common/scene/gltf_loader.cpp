@@ -24,11 +24,13 @@ Scene build_scene(const tinygltf::Model& model, const SceneLoadOptions& options,
   for (const GltfPlacement& placement : placements) used[static_cast<std::size_t>(placement.mesh)] = true;
 
   const GltfTextureSets sets = add_gltf_materials(model, accessors, options, name, scene);
-  const std::vector<std::uint32_t> mesh_index = add_gltf_meshes(model, accessors, used, sets, options, name, scene);
+  const std::vector<std::uint32_t> mesh_index =
+      add_gltf_meshes(model, accessors, used, sets, options, name, scene);
   scene.objects.reserve(placements.size());
   if (options.shading) scene.object_names.reserve(placements.size());
   for (const GltfPlacement& placement : placements) {
-    scene.objects.push_back({mesh_index[static_cast<std::size_t>(placement.mesh)], placement.world_from_object});
+    scene.objects.push_back(
+        {mesh_index[static_cast<std::size_t>(placement.mesh)], placement.world_from_object});
     if (options.shading) scene.object_names.push_back(object_name(model, placement));
   }
   return scene;

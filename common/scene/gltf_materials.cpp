@@ -23,7 +23,8 @@ AlphaMode alpha_mode_of(const tinygltf::Material& material, const std::string& w
 
 class Textures {
  public:
-  Textures(const tinygltf::Model& model, const GltfAccessors& accessors, const std::string& name, Scene& scene)
+  Textures(const tinygltf::Model& model, const GltfAccessors& accessors, const std::string& name,
+           Scene& scene)
       : model_(model), accessors_(accessors), name_(name), scene_(scene) {}
 
   /// Index in Scene::textures; the same image with the same wrapping is decoded once.

@@ -15,10 +15,10 @@ struct GltfTextureSets {
   std::vector<int> set_of_material;
 };
 
-/// Fills Scene::materials (same indices as the file) and the Scene::textures they need: with shading every base
-/// colour texture, without only those of MASK materials. Metallic, normal and emissive maps hide nothing and are
-/// not read. A material that lets light through (KHR_materials_transmission) counts as BLEND: it never hides.
-/// Throws InputError prefixed with `name` for a texture that cannot be decoded.
+/// Fills Scene::materials (same indices as the file) and the Scene::textures they need: with shading every
+/// base colour texture, without only those of MASK materials. Metallic, normal and emissive maps hide nothing
+/// and are not read. A material that lets light through (KHR_materials_transmission) counts as BLEND: it
+/// never hides. Throws InputError prefixed with `name` for a texture that cannot be decoded.
 GltfTextureSets add_gltf_materials(const tinygltf::Model& model, const GltfAccessors& accessors,
                                    const SceneLoadOptions& options, const std::string& name, Scene& scene);
 

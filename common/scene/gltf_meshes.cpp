@@ -11,8 +11,8 @@
 namespace sightline {
 namespace {
 
-/// Vertices and indices that a file of any size may have. Beyond, they must not outnumber its bytes: accessors that
-/// overlap could otherwise multiply a small buffer without end.
+/// Vertices and indices that a file of any size may have. Beyond, they must not outnumber its bytes:
+/// accessors that overlap could otherwise multiply a small buffer without end.
 constexpr std::uint64_t k_unquestioned_elements = std::uint64_t{1} << 24;
 
 /// Vertices are the same where all three accessors are.
@@ -39,7 +39,8 @@ int attribute(const tinygltf::Primitive& primitive, const std::string& key) {
   return found == primitive.attributes.end() ? -1 : found->second;
 }
 
-/// Rewrites the strip or fan at the end of `indices`, from `first`, as separate triangles of the same winding.
+/// Rewrites the strip or fan at the end of `indices`, from `first`, as separate triangles of the same
+/// winding.
 void separate_triangles(int mode, std::size_t first, std::vector<std::uint32_t>& indices) {
   const std::vector<std::uint32_t> run(indices.begin() + static_cast<std::ptrdiff_t>(first), indices.end());
   indices.resize(first);
@@ -66,8 +67,10 @@ class MeshAppender {
       if (!draws_triangles(primitive)) continue;
       const VertexSource source = source_of(primitive);
       const std::size_t count = accessors_.count(source.position, 3);
-      if (ranges_.try_emplace(source, VertexRange{static_cast<std::uint32_t>(vertex_count_),
-                                                  static_cast<std::uint32_t>(count)}).second) {
+      if (ranges_
+              .try_emplace(source, VertexRange{static_cast<std::uint32_t>(vertex_count_),
+                                               static_cast<std::uint32_t>(count)})
+              .second) {
         vertex_count_ += count;
         sources_.push_back(source);
       }
@@ -113,7 +116,8 @@ class MeshAppender {
       accessors_.append_indices(source.indices, range.first, range.count, scene_.indices);
     } else {
       scene_.indices.resize(first + range.count);
-      std::iota(scene_.indices.begin() + static_cast<std::ptrdiff_t>(first), scene_.indices.end(), range.first);
+      std::iota(scene_.indices.begin() + static_cast<std::ptrdiff_t>(first), scene_.indices.end(),
+                range.first);
     }
     if (source.mode != TINYGLTF_MODE_TRIANGLES) separate_triangles(source.mode, first, scene_.indices);
     const std::size_t whole = (scene_.indices.size() - first) / 3 * 3;
@@ -138,10 +142,12 @@ class MeshAppender {
     const int position = attribute(primitive, "POSITION");
     if (position < 0) refuse_scene(name_, "a triangle primitive has no POSITION");
     int set = 0;
-    if (primitive.material >= 0 && static_cast<std::size_t>(primitive.material) < sets_.set_of_material.size()) {
+    if (primitive.material >= 0 &&
+        static_cast<std::size_t>(primitive.material) < sets_.set_of_material.size()) {
       set = std::max(0, sets_.set_of_material[static_cast<std::size_t>(primitive.material)]);
     }
-    return {position, attribute(primitive, "NORMAL"), attribute(primitive, "TEXCOORD_" + std::to_string(set))};
+    return {position, attribute(primitive, "NORMAL"),
+            attribute(primitive, "TEXCOORD_" + std::to_string(set))};
   }
 
   [[nodiscard]] bool uv_wanted(const tinygltf::Primitive& primitive, const VertexSource& source) {
@@ -203,7 +209,8 @@ class MeshAppender {
 
 std::vector<std::uint32_t> add_gltf_meshes(const tinygltf::Model& model, const GltfAccessors& accessors,
                                            const std::vector<bool>& used, const GltfTextureSets& sets,
-                                           const SceneLoadOptions& options, const std::string& name, Scene& scene) {
+                                           const SceneLoadOptions& options, const std::string& name,
+                                           Scene& scene) {
   MeshAppender appender(model, accessors, sets, options, name, scene);
   for (std::size_t i = 0; i < model.meshes.size(); ++i) {
     if (used[i]) appender.plan(model.meshes[i]);

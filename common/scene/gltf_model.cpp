@@ -21,11 +21,13 @@ namespace fs = std::filesystem;
 
 /// Extensions without which we still draw what decides visibility, or that we implement.
 constexpr std::array<std::string_view, 14> k_known_extensions{
-    "EXT_mesh_gpu_instancing",        "KHR_materials_anisotropy", "KHR_materials_clearcoat",
-    "KHR_materials_emissive_strength", "KHR_materials_ior",        "KHR_materials_iridescence",
-    "KHR_materials_sheen",            "KHR_materials_specular",   "KHR_materials_transmission",
-    "KHR_materials_unlit",            "KHR_materials_volume",     "KHR_mesh_quantization",
-    "KHR_texture_transform",          "KHR_lights_punctual"};
+    "EXT_mesh_gpu_instancing",    "KHR_materials_anisotropy",
+    "KHR_materials_clearcoat",    "KHR_materials_emissive_strength",
+    "KHR_materials_ior",          "KHR_materials_iridescence",
+    "KHR_materials_sheen",        "KHR_materials_specular",
+    "KHR_materials_transmission", "KHR_materials_unlit",
+    "KHR_materials_volume",       "KHR_mesh_quantization",
+    "KHR_texture_transform",      "KHR_lights_punctual"};
 
 /// What the parser may read besides the file itself.
 struct Folder {
@@ -47,9 +49,12 @@ bool lies_in_folder(const std::string& path, void* user) {
   return folder_end == folder.canonical.end();
 }
 
-std::string keep_path(const std::string& path, void*) { return path; }
+std::string keep_path(const std::string& path, void*) {
+  return path;
+}
 
-bool read_from_folder(std::vector<unsigned char>* out, std::string* why, const std::string& path, void* user) {
+bool read_from_folder(std::vector<unsigned char>* out, std::string* why, const std::string& path,
+                      void* user) {
   try {
     auto& folder = *static_cast<Folder*>(user);
     if (++folder.reads[path] > k_most_reads_of_a_file) refuse_scene(path, "is named too often");
@@ -62,12 +67,14 @@ bool read_from_folder(std::vector<unsigned char>* out, std::string* why, const s
   }
 }
 
-bool write_nothing(std::string*, const std::string&, const std::vector<unsigned char>&, void*) { return false; }
+bool write_nothing(std::string*, const std::string&, const std::vector<unsigned char>&, void*) {
+  return false;
+}
 
-/// Decoding waits until a material asks for it. For an image in a buffer view `bytes` has not been checked against
-/// the buffer and must not be touched.
-bool keep_encoded(tinygltf::Image* image, int, std::string*, std::string*, int, int, const unsigned char* bytes,
-                  int size, void*) {
+/// Decoding waits until a material asks for it. For an image in a buffer view `bytes` has not been checked
+/// against the buffer and must not be touched.
+bool keep_encoded(tinygltf::Image* image, int, std::string*, std::string*, int, int,
+                  const unsigned char* bytes, int size, void*) {
   if (image->bufferView < 0 && size > 0) image->image.assign(bytes, bytes + size);
   return true;
 }
@@ -103,8 +110,10 @@ tinygltf::Model parse_gltf(const fs::path& file) {
   }
   if (!parsed) refuse_scene(name, "is not valid glTF: " + errors);
   for (const std::string& extension : model.extensionsRequired) {
-    if (std::find(k_known_extensions.begin(), k_known_extensions.end(), extension) == k_known_extensions.end()) {
-      refuse_scene(name, "requires the extension " + extension + ", which is not supported; export without it");
+    if (std::find(k_known_extensions.begin(), k_known_extensions.end(), extension) ==
+        k_known_extensions.end()) {
+      refuse_scene(name,
+                   "requires the extension " + extension + ", which is not supported; export without it");
     }
   }
   return model;

@@ -89,7 +89,8 @@ class Walk {
     const auto fits = [](const std::vector<double>& values, std::size_t size) {
       return values.empty() || values.size() == size;
     };
-    if (!fits(node.matrix, 16) || !fits(node.translation, 3) || !fits(node.rotation, 4) || !fits(node.scale, 3)) {
+    if (!fits(node.matrix, 16) || !fits(node.translation, 3) || !fits(node.rotation, 4) ||
+        !fits(node.scale, 3)) {
       refuse(index, "its transform has a wrong number of values");
     }
     if (!node.matrix.empty()) {
@@ -155,7 +156,8 @@ class Walk {
     if (attributes.Has("TRANSLATION")) {
       accessors_.append_floats(attributes.Get("TRANSLATION").GetNumberAsInt(), translations);
     }
-    if (attributes.Has("ROTATION")) accessors_.append_floats(attributes.Get("ROTATION").GetNumberAsInt(), rotations);
+    if (attributes.Has("ROTATION"))
+      accessors_.append_floats(attributes.Get("ROTATION").GetNumberAsInt(), rotations);
     if (attributes.Has("SCALE")) accessors_.append_floats(attributes.Get("SCALE").GetNumberAsInt(), scales);
     for (std::size_t i = 0; i < count; ++i) {
       const glm::dvec3 translation = translations.empty() ? glm::dvec3(0.0) : glm::dvec3(translations[i]);

@@ -19,10 +19,11 @@ struct GltfPlacement {
 };
 
 /// Walks the default scene (or the first, or without any every root) depth first, children in file order.
-/// Matrices are composed in double. Throws InputError prefixed with `name` for a node or mesh that does not exist,
-/// a node reached twice (a cycle, or two parents), an impossible transform, or more instances than the file's
-/// bytes justify.
+/// Matrices are composed in double. Throws InputError prefixed with `name` for a node or mesh that does not
+/// exist, a node reached twice (a cycle, or two parents), an impossible transform, or more instances than the
+/// file's bytes justify.
 [[nodiscard]] std::vector<GltfPlacement> place_gltf_meshes(const tinygltf::Model& model,
-                                                           const GltfAccessors& accessors, const std::string& name);
+                                                           const GltfAccessors& accessors,
+                                                           const std::string& name);
 
 }  // namespace sightline

@@ -63,7 +63,8 @@ void add_material(Hasher& hasher, const Scene& scene, const Material& material) 
 void add_primitive(Hasher& hasher, const Scene& scene, const Primitive& primitive) {
   hasher.add(primitive.index_count);
   hasher.add(primitive.material);
-  const auto indices = std::span<const std::uint32_t>(scene.indices).subspan(primitive.first_index, primitive.index_count);
+  const auto indices =
+      std::span<const std::uint32_t>(scene.indices).subspan(primitive.first_index, primitive.index_count);
   hasher.add(indices);
   if (!cuts_holes(scene.materials[primitive.material])) return;
   for (const std::uint32_t index : indices) {

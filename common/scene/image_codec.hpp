@@ -9,8 +9,8 @@
 
 namespace sightline {
 
-/// Decodes a PNG or JPEG to 8-bit RGBA. Throws InputError beginning with `what` when it is neither, damaged, or
-/// claims more pixels than so many bytes can encode.
+/// Decodes a PNG or JPEG to 8-bit RGBA. Throws InputError beginning with `what` when it is neither, damaged,
+/// or claims more pixels than so many bytes can encode.
 [[nodiscard]] Texture decode_image(std::span<const std::uint8_t> bytes, const std::string& what);
 
 /// The texture's pixels as a PNG, exactly.

@@ -35,7 +35,8 @@ Scene load_scene(const std::filesystem::path& file, const SceneLoadOptions& opti
   if (!std::filesystem::is_regular_file(file, error)) refuse_scene(name, "is not a regular file");
   try {
     if (extension == ".glb" || extension == ".gltf") return load_gltf(file, options);
-    if (std::find(k_assimp_extensions.begin(), k_assimp_extensions.end(), extension) != k_assimp_extensions.end()) {
+    if (std::find(k_assimp_extensions.begin(), k_assimp_extensions.end(), extension) !=
+        k_assimp_extensions.end()) {
       return load_with_assimp(file, options);
     }
   } catch (const std::bad_alloc&) {

@@ -17,8 +17,8 @@ struct SceneLoadOptions {
 /// Reads a scene file: .glb and .gltf with tinygltf; .obj, .ply, .stl, .fbx, .dae, .ifc with assimp.
 ///
 /// An object is a node with a mesh (in glTF, each instance of EXT_mesh_gpu_instancing is one too); a mesh's
-/// primitives stay together. Strips, fans and non-indexed primitives become indexed triangles; points and lines
-/// are dropped. Object order is the file's node order in a depth-first walk of the scene, so that both
+/// primitives stay together. Strips, fans and non-indexed primitives become indexed triangles; points and
+/// lines are dropped. Object order is the file's node order in a depth-first walk of the scene, so that both
 /// processes number objects alike.
 ///
 /// Throws InputError, one line that begins with the file's name, for anything that cannot be drawn as stated:

@@ -16,8 +16,8 @@ struct FileBytes {
   [[nodiscard]] std::span<const std::uint8_t> span() const noexcept { return {data.get(), size}; }
 };
 
-/// Throws InputError naming the file when it is missing, no regular file, empty, larger than `largest` bytes or
-/// shrinks while it is read.
+/// Throws InputError naming the file when it is missing, no regular file, empty, larger than `largest` bytes
+/// or shrinks while it is read.
 [[nodiscard]] FileBytes read_file(const std::filesystem::path& file, std::uint64_t largest);
 
 }  // namespace sightline

@@ -22,8 +22,8 @@ inline constexpr std::uint32_t k_no_texture = 0xffffffffu;
 struct Material {
   glm::vec4 base_color{1.0f};  ///< linear RGBA factor
   AlphaMode alpha_mode = AlphaMode::opaque;
-  float alpha_cutoff = 0.5f;   ///< mask: a fragment with alpha below it does not exist
-  bool double_sided = false;   ///< otherwise back faces are culled
+  float alpha_cutoff = 0.5f;  ///< mask: a fragment with alpha below it does not exist
+  bool double_sided = false;  ///< otherwise back faces are culled
   std::uint32_t texture = k_no_texture;
 
   bool operator==(const Material&) const = default;
@@ -60,17 +60,17 @@ struct Object {
 
 /// All geometry of a scene in flat arrays. Vertices of all meshes lie one after another.
 ///
-/// Frames: vertices are in mesh frame; objects place meshes in the scene frame, which is the world frame moved
-/// by world_origin_m (zero unless the scene lies further than 1 km from the origin, then its rounded centre).
-/// Right-handed, Y up, metres.
+/// Frames: vertices are in mesh frame; objects place meshes in the scene frame, which is the world frame
+/// moved by world_origin_m (zero unless the scene lies further than 1 km from the origin, then its rounded
+/// centre). Right-handed, Y up, metres.
 struct Scene {
   std::vector<glm::vec3> positions;
-  std::vector<glm::vec3> normals;    ///< empty, or one a vertex; (0,0,0) where the file has none
-  std::vector<glm::vec2> uvs;        ///< empty, or one a vertex
+  std::vector<glm::vec3> normals;  ///< empty, or one a vertex; (0,0,0) where the file has none
+  std::vector<glm::vec2> uvs;      ///< empty, or one a vertex
   std::vector<std::uint32_t> indices;
   std::vector<Primitive> primitives;
   std::vector<Mesh> meshes;
-  std::vector<Material> materials;   ///< never empty
+  std::vector<Material> materials;  ///< never empty
   std::vector<Texture> textures;
   std::vector<Object> objects;
   std::vector<std::string> object_names;  ///< empty, or one an object
@@ -79,7 +79,9 @@ struct Scene {
   glm::dvec3 world_origin_m{0.0};
   SceneDigest digest{};
 
-  [[nodiscard]] std::uint32_t object_count() const noexcept { return static_cast<std::uint32_t>(objects.size()); }
+  [[nodiscard]] std::uint32_t object_count() const noexcept {
+    return static_cast<std::uint32_t>(objects.size());
+  }
   /// Triangles of one object, all its primitives.
   [[nodiscard]] std::uint64_t triangle_count(ObjectId id) const noexcept;
   /// Triangles of all objects (an instanced mesh counts once per instance).
@@ -89,11 +91,12 @@ struct Scene {
 };
 
 /// Fills mesh bounds, object_bounds, bounds and digest from the rest, after moving the scene frame: where
-/// world_origin_m is zero and the scene's centre lies further than 1 km from it on any axis, the origin becomes
-/// the rounded centre. Adds a material where there is none. Loaders and generators call it last.
+/// world_origin_m is zero and the scene's centre lies further than 1 km from it on any axis, the origin
+/// becomes the rounded centre. Adds a material where there is none. Loaders and generators call it last.
 ///
-/// The digest covers what decides visibility: triangles, materials, transforms, object order, and for textured
-/// MASK materials the texture and its coordinates. It is the same with and without what only shading needs.
+/// The digest covers what decides visibility: triangles, materials, transforms, object order, and for
+/// textured MASK materials the texture and its coordinates. It is the same with and without what only shading
+/// needs.
 ///
 /// Throws InputError (prefixed with `name`) when the scene breaks a rule above: an index out of range, a
 /// non-finite vertex or transform, no object with a triangle, more than k_max_object_count objects.

@@ -4,8 +4,9 @@
 
 namespace sightline {
 
-/// A small generator whose numbers are the same on every machine and standard library, which those of <random>'s
-/// distributions are not. Source: Steele, Lea and Flood, "Fast Splittable Pseudorandom Number Generators", 2014.
+/// A small generator whose numbers are the same on every machine and standard library, which those of
+/// <random>'s distributions are not. Source: Steele, Lea and Flood, "Fast Splittable Pseudorandom Number
+/// Generators", 2014.
 class SceneRandom {
  public:
   explicit SceneRandom(std::uint64_t seed) noexcept : state_(seed) {}

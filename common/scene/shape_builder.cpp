@@ -9,7 +9,8 @@ namespace sightline {
 namespace {
 
 glm::vec2 on_circle(int step, int segments) {
-  const float angle = 2.0f * glm::pi<float>() * static_cast<float>(step % segments) / static_cast<float>(segments);
+  const float angle =
+      2.0f * glm::pi<float>() * static_cast<float>(step % segments) / static_cast<float>(segments);
   return {std::cos(angle), std::sin(angle)};
 }
 
@@ -48,7 +49,8 @@ void ShapeBuilder::add_lathe(const glm::vec3& axis, std::span<const glm::vec2> p
   for (std::size_t ring = 0; ring + 1 < profile.size(); ++ring) {
     for (int i = 0; i < segments; ++i) {
       if (profile[ring].x > 0.0f) add_triangle(vertex(ring, i), vertex(ring, i + 1), vertex(ring + 1, i + 1));
-      if (profile[ring + 1].x > 0.0f) add_triangle(vertex(ring, i), vertex(ring + 1, i + 1), vertex(ring + 1, i));
+      if (profile[ring + 1].x > 0.0f)
+        add_triangle(vertex(ring, i), vertex(ring + 1, i + 1), vertex(ring + 1, i));
     }
   }
 }

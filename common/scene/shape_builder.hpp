@@ -12,8 +12,8 @@ namespace sightline {
 
 /// Appends meshes made of simple closed shapes to a scene under construction; faces turn outwards.
 ///
-/// One mesh at a time: add shapes, begin_material() where the material changes, close_mesh() to get its index.
-/// Vertices get texture coordinates and no normals (a renderer makes those).
+/// One mesh at a time: add shapes, begin_material() where the material changes, close_mesh() to get its
+/// index. Vertices get texture coordinates and no normals (a renderer makes those).
 class ShapeBuilder {
  public:
   explicit ShapeBuilder(Scene& scene) : scene_(scene) {}
@@ -22,8 +22,8 @@ class ShapeBuilder {
   void begin_material(std::uint32_t material);
   /// 12 triangles.
   void add_box(const glm::vec3& low, const glm::vec3& high);
-  /// A surface of revolution about the Y axis through `axis`: `profile` holds (radius, height) from the bottom up.
-  /// Two triangles a segment and profile step, one where a radius is zero.
+  /// A surface of revolution about the Y axis through `axis`: `profile` holds (radius, height) from the
+  /// bottom up. Two triangles a segment and profile step, one where a radius is zero.
   void add_lathe(const glm::vec3& axis, std::span<const glm::vec2> profile, int segments);
   /// A wheel: a cylinder along X. 4 triangles a segment.
   void add_wheel(const glm::vec3& center, float radius, float half_width, int segments);

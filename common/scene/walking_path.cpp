@@ -11,18 +11,18 @@
 namespace sightline {
 namespace {
 
-constexpr double k_duration_s = 60.0;
 constexpr double k_rate_hz = 60.0;
-constexpr int k_sample_count = 3600;  // of the closed loop; the path repeats the first at the end
+constexpr int k_sample_count = 3600;  // 60 s of the closed loop; the path repeats the first at the end
 constexpr double k_eye_height_m = 1.7;
 constexpr double k_sway_rad = 0.35;
 constexpr double k_sway_period_s = 7.5;  // divides the duration: the loop closes
-constexpr double k_look_ahead_s = 0.6;
+constexpr double k_look_ahead_s = 2.0;
 
 /// Points at equal distances along the closed polygon.
 std::vector<glm::dvec2> resample(std::span<const glm::dvec2> corners) {
   double length = 0.0;
-  for (std::size_t i = 0; i < corners.size(); ++i) length += glm::distance(corners[i], corners[(i + 1) % corners.size()]);
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    length += glm::distance(corners[i], corners[(i + 1) % corners.size()]);
   std::vector<glm::dvec2> points;
   points.reserve(k_sample_count);
   std::size_t edge = 0;

@@ -56,14 +56,17 @@ class BinaryChunk {
   std::vector<std::span<const std::uint8_t>> parts_;
 };
 
-Json list_of(const glm::vec3& v) { return {v.x, v.y, v.z}; }
+Json list_of(const glm::vec3& v) {
+  return {v.x, v.y, v.z};
+}
 
 Json material_json(const Material& material) {
   const glm::vec4& c = material.base_color;
   Json pbr{{"baseColorFactor", {c.x, c.y, c.z, c.w}}, {"metallicFactor", 0}};
   if (material.texture != k_no_texture) pbr["baseColorTexture"] = {{"index", material.texture}};
   Json json{{"pbrMetallicRoughness", pbr}, {"doubleSided", material.double_sided}};
-  // The cutoff goes with every material: the specification allows it only with MASK, but nothing else keeps it.
+  // The cutoff goes with every material: the specification allows it only with MASK, but nothing else keeps
+  // it.
   if (material.alpha_mode == AlphaMode::mask) json["alphaMode"] = "MASK";
   if (material.alpha_mode == AlphaMode::blend) json["alphaMode"] = "BLEND";
   if (material.alpha_mode == AlphaMode::mask || material.alpha_cutoff != 0.5f) {
@@ -152,7 +155,8 @@ void add_textures(const Scene& scene, const std::vector<std::vector<std::uint8_t
 }
 
 /// Everything but the nodes as a document, the nodes and their list as text one by one.
-std::string json_chunk(const Scene& scene, const std::vector<std::vector<std::uint8_t>>& pngs, BinaryChunk& chunk) {
+std::string json_chunk(const Scene& scene, const std::vector<std::vector<std::uint8_t>>& pngs,
+                       BinaryChunk& chunk) {
   const Accessors accessors = describe_arrays(scene, chunk);
   Json document;
   document["asset"] = {{"version", "2.0"}, {"generator", "sightline"}};

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 
 #include "main_view/app/common_options.hpp"
 
@@ -15,6 +16,8 @@ struct AuditOptions {
   ServiceOptions service;
   double latency_ms = 50.0;    ///< virtual time from request to answer
   bool still = false;          ///< keeps the camera where it is at replay.start_s
+  std::optional<double> max_wrong_pixels;  ///< mean share of a frame's pixels above which the exit code is 1
+  std::filesystem::path frames_csv;        ///< one line a frame; empty for none
   std::filesystem::path json;  ///< report; standard output has the summary either way
 };
 

@@ -117,8 +117,10 @@ LayerCounts DepthComplexity::count(GpuScene& scene, const Eye& eye, std::span<co
     glUseProgram(program);
     glUniformMatrix4fv(0, 1, GL_FALSE, glm::value_ptr(clip_from_scene));
   }
-  scene.draw(Layer::opaque, ids, {solid_.get(), mask_.get()});
-  scene.draw(Layer::blended, ids, {solid_.get(), mask_.get()});
+  DrawStats drawn = scene.draw(Layer::opaque, ids, {solid_.get(), mask_.get()});
+  const DrawStats blended = scene.draw(Layer::blended, ids, {solid_.get(), mask_.get()});
+  drawn.objects += blended.objects;
+  drawn.triangles += blended.triangles;
   glDisable(GL_BLEND);
   glEnable(GL_DEPTH_TEST);
 
@@ -138,6 +140,7 @@ LayerCounts DepthComplexity::count(GpuScene& scene, const Eye& eye, std::span<co
     }
   }
   counts.mean = sum / double(size_.pixel_count());
+  counts.drawn = drawn;
   return counts;
 }
 

@@ -13,7 +13,8 @@ struct LayerCounts {
   ImageSize size;
   std::vector<std::uint16_t> layers;  ///< rows from the top
   std::uint32_t max = 0;
-  double mean = 0.0;  ///< over all pixels, empty ones too
+  double mean = 0.0;      ///< over all pixels, empty ones too
+  gl::DrawStats drawn{};  ///< an object with two layers counts in each
 };
 
 /// Counts layers. Both layers of an object count, fragments that the alpha test or back-face culling drops do

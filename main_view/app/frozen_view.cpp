@@ -14,7 +14,7 @@ namespace {
 constexpr double k_shown_share = 0.8;
 
 constexpr glm::vec4 k_frustum_color{1.0f, 0.82f, 0.10f, 1.0f};
-constexpr glm::vec4 k_frustum_fill{1.0f, 0.86f, 0.25f, 0.10f};
+constexpr glm::vec4 k_frustum_fill{1.0f, 0.86f, 0.25f, 0.07f};
 constexpr glm::vec4 k_culled_box_color{0.85f, 0.20f, 0.22f, 0.22f};
 
 glm::dvec3 position_of(const Eye& eye) {
@@ -78,7 +78,7 @@ Eye eye_behind(const Eye& culled_for, double depth_m, ImageSize size) {
   const glm::dvec3 right(-forward.z, 0.0, forward.x);
   const glm::dvec3 apex = position_of(culled_for);
   const glm::dvec3 eye =
-      apex - 0.65 * depth_m * forward + 0.35 * depth_m * right + glm::dvec3(0, 1.15 * depth_m, 0);
+      apex - 0.85 * depth_m * forward + 0.35 * depth_m * right + glm::dvec3(0, 1.30 * depth_m, 0);
   const glm::dvec3 target = apex + 0.50 * depth_m * forward;
   const Perspective lens{.vertical_fov_rad = 0.9, .near_m = 0.01 * depth_m, .far_m = 20.0 * depth_m + 1000.0};
   return {.camera_from_world = glm::lookAt(eye, target, glm::dvec3(0, 1, 0)),

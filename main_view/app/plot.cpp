@@ -39,7 +39,7 @@ struct Axes {
 std::string number(double value, double step) {
   const int decimals = std::clamp(static_cast<int>(std::ceil(-std::log10(step) - 1e-9)), 0, 9);
   std::array<char, 64> text{};
-  std::snprintf(text.data(), text.size(), "%.*f", decimals, value);
+  std::snprintf(text.data(), text.size(), "%.*f", decimals, value + 0.0);  // no "-0"
   return text.data();
 }
 

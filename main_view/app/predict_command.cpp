@@ -138,9 +138,11 @@ void require_usable(const PredictOptions& options) {
   }
 }
 
-/// Mean over the traces of each predictor's mean error over the paper's.
+/// Each predictor's mean error over the paper's; geometric mean over the traces, as they are ratios.
 void print_summary(const nlohmann::json& rows, const PredictOptions& options) {
-  std::printf("mean error over the traces, relative to avango (order 2 over 20 poses); smaller is better\n");
+  std::printf(
+      "mean error relative to avango (order 2 over 20 poses); geometric mean of the traces, smaller is "
+      "better\n");
   for (const char* field : {"position_mm_mean", "rotation_deg_mean"}) {
     for (const Predictor& predictor : predictors()) {
       std::printf("%-18s %-18s", field, predictor.name);
@@ -152,11 +154,11 @@ void print_summary(const nlohmann::json& rows, const PredictOptions& options) {
           if (row["predictor"] == predictor.name) own[row["trace"]] = row[field];
           if (row["predictor"] == "avango") papers[row["trace"]] = row[field];
         }
-        std::vector<double> ratios;
+        std::vector<double> logarithms;
         for (const auto& [trace, error] : own) {
-          if (papers[trace] > 0.0) ratios.push_back(error / papers[trace]);
+          if (error > 1e-6 && papers[trace] > 1e-6) logarithms.push_back(std::log(error / papers[trace]));
         }
-        std::printf("  k=%-3d %5.2f", horizon, mean(ratios));
+        std::printf("  k=%-3d %5.2f", horizon, std::exp(mean(logarithms)));
       }
       std::printf("\n");
     }

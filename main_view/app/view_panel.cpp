@@ -10,9 +10,9 @@
 namespace sightline {
 namespace {
 
-constexpr ImVec4 k_good{0.45f, 0.85f, 0.50f, 1.0f};
-constexpr ImVec4 k_bad{1.0f, 0.62f, 0.35f, 1.0f};
-constexpr ImVec4 k_chosen{1.0f, 0.85f, 0.35f, 1.0f};
+const ImVec4 k_good{0.45f, 0.85f, 0.50f, 1.0f};
+const ImVec4 k_bad{1.0f, 0.62f, 0.35f, 1.0f};
+const ImVec4 k_chosen{1.0f, 0.85f, 0.35f, 1.0f};
 
 /// A row of words with the one in force highlighted.
 void choice(const char* label, std::initializer_list<const char*> words, int chosen) {

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <utility>
 
-#define GLFW_INCLUDE_NONE  // OpenGL comes from common/gl/functions.hpp
 #include <GLFW/glfw3.h>
 
 #include "main_view/app/frozen_view.hpp"
@@ -256,6 +255,7 @@ void Viewer::draw_picture(const Eye& eye) {
   } else if (status_.picture == Picture::depth_complexity) {
     const LayerCounts counts = sized_->complexity.count(scene_.gpu(), eye, ids);
     status_.max_layers = counts.max;
+    status_.drawn = counts.drawn;
     // The scale keeps to powers of two, or the colours would flicker from frame to frame.
     sized_->target.write(depth_complexity_image(counts, std::bit_ceil(std::max(counts.max, 8u))));
   } else if (frozen_) {

@@ -180,8 +180,8 @@ FrameDecision CullingCore::decide(double now_s, std::span<const Eye> eyes) const
     for (std::size_t i = 0; i < eyes.size(); ++i) {
       const Eye& requested = filed->request.eyes[i];
       decision.tested.push_back(tested_field(requested, filed->request.rotation_error_rad));
-      decision.fields.push_back({i, cutting_sides(requested, filed->request.rotation_error_rad, eyes[i])});
-      if (cuts_nothing(decision.fields.back().cutting_sides)) covered[i] = true;
+      decision.fields.push_back({i, cut_offs(requested, filed->request.rotation_error_rad, eyes[i])});
+      if (decision.fields.back().cuts.empty()) covered[i] = true;
     }
   }
   decision.field_covered = std::find(covered.begin(), covered.end(), false) == covered.end();

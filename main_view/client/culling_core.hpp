@@ -12,6 +12,7 @@
 #include "common/pose.hpp"
 #include "common/view.hpp"
 #include "main_view/client/culling_options.hpp"
+#include "main_view/client/field_coverage.hpp"
 #include "main_view/client/horizon_estimator.hpp"
 #include "main_view/client/motion_predictor.hpp"
 #include "main_view/client/pose_history.hpp"
@@ -37,12 +38,10 @@ enum class Fallback {
   stale    ///< the nearest sets are too far from now
 };
 
-/// Part of a view frustum that a set's eye looked at: an eye of the frame, and the sides of the tested field
-/// that cut into that eye's view. Sides with the whole view on their inner side are (0, 0, 0, 1), always
-/// inside.
+/// What a set's eye did not see of an eye of the frame. Nothing when `cuts` is empty.
 struct TestedField {
   std::size_t eye = 0;
-  Frustum cutting_sides;
+  std::vector<CutOff> cuts;
 };
 
 /// What one frame draws.

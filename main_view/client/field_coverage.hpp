@@ -1,5 +1,8 @@
 #pragma once
 
+#include <vector>
+
+#include "common/bounds.hpp"
 #include "common/frustum.hpp"
 #include "common/view.hpp"
 
@@ -9,15 +12,23 @@ namespace sightline {
 /// the same function as in the daemon. World frame.
 [[nodiscard]] Frustum tested_field(const Eye& requested, double rotation_error_rad) noexcept;
 
-/// The sides of the tested field that cut into the view frustum of `eye`; the other sides, which have the
-/// whole view on their inner side, are replaced by (0, 0, 0, 1).
+/// A part of a view frustum that lies outside one side of a tested field.
+struct CutOff {
+  Frustum inner_side;  ///< that side alone; its other planes are (0, 0, 0, 1)
+  Aabb region;         ///< holds the whole part; infinite where the part is
+
+  /// Whether the box may reach into the part. Errs towards true.
+  [[nodiscard]] bool may_hold(const Aabb& box) const noexcept;
+};
+
+/// The parts of what `eye` sees that lie outside the tested field, one for each side that cuts into the view.
 ///
 /// A view frustum is the convex hull of its eight corners (the far ones may lie at infinity), so a side with
-/// all eight on its inner side cuts nothing off, however the two cameras lie. Errs towards reporting a cut,
+/// all eight on its inner side cuts nothing off, however the two cameras lie. Errs towards reporting a part,
 /// except for slivers below a nanometre per metre, which rounding makes.
-[[nodiscard]] Frustum cutting_sides(const Eye& requested, double rotation_error_rad, const Eye& eye) noexcept;
-
-/// No side cuts: everything that `eye` can see lies in the tested field.
-[[nodiscard]] bool cuts_nothing(const Frustum& cutting) noexcept;
+///
+/// When the cameras differ only by a small step, what is cut off is a sliver next to the eye: the region says
+/// so, and hardly an object reaches into it.
+[[nodiscard]] std::vector<CutOff> cut_offs(const Eye& requested, double rotation_error_rad, const Eye& eye);
 
 }  // namespace sightline

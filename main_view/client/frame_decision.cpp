@@ -11,7 +11,8 @@ bool FrameDecision::may_be_visible(ObjectId id, const Aabb& world_bounds) const 
   // nothing.
   for (std::size_t eye = 0; eye < eye_count; ++eye) {
     const bool was_tested = std::any_of(fields.begin(), fields.end(), [&](const TestedField& field) {
-      return field.eye == eye && definitely_contains(field.cutting_sides, world_bounds);
+      return field.eye == eye && std::none_of(field.cuts.begin(), field.cuts.end(),
+                                              [&](const CutOff& cut) { return cut.may_hold(world_bounds); });
     });
     if (!was_tested) return true;
   }

@@ -22,9 +22,16 @@ struct PredictedPose {
 /// Klimenko, Nikitina, Nikitin, "Parallel Visibility Test and Occlusion Culling in Avango Virtual Environment
 /// Framework": a least-squares polynomial of order n over the last p poses for each of x, y, z and the
 /// quaternion's components, which are normalised afterwards. While there are fewer than n + 1 poses the order
-/// is lower. Ours in addition: the error estimate. It is the larger of k_fit_error_factor standard deviations
-/// of the fit's own prediction, and the largest error that predictions about as far ahead made in the last
-/// k_error_memory_s.
+/// is lower.
+///
+/// Ours in addition: the error estimate. It is the larger of k_fit_error_factor standard deviations of the
+/// fit's own prediction, and k_memory_error_factor times the largest error that predictions about as far
+/// ahead made in the last k_error_memory_s. Recorded head and hand motion (60 Hz, 5 frames ahead) lies within
+/// it 97 times in 100 or more; with no margin on the memory, 91. It errs either way: a sudden turn is in no
+/// data before it.
+///
+/// Cost at order 2 over 20 on one core: 9 us with ceres::TinySolver, 74 us with ceres::Problem, 4 us for one
+/// QR factorization in closed form (tests/client/bench_predictor.cpp; a shared AMD EPYC, GCC 12).
 class MotionPredictor {
  public:
   explicit MotionPredictor(const CullingOptions& options);
@@ -41,6 +48,7 @@ class MotionPredictor {
   void forget_pending() noexcept { pending_.clear(); }
 
   static constexpr double k_fit_error_factor = 3.0;
+  static constexpr double k_memory_error_factor = 1.5;
   static constexpr double k_error_memory_s = 1.0;
 
  private:

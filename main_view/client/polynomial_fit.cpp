@@ -94,7 +94,7 @@ Extrapolation fit(std::span<const double> times_s, std::span<const PoseComponent
 
 Extrapolation fit_and_extrapolate(std::span<const double> times_s, std::span<const PoseComponents> values,
                                   int order, double at_time_s) {
-  static_assert(k_max_predictor_order == 5, "one case an order");
+  static_assert(k_max_predictor_order == 3, "one case an order");
   switch (order) {
     case 0:
       return fit<1>(times_s, values, at_time_s);
@@ -102,12 +102,8 @@ Extrapolation fit_and_extrapolate(std::span<const double> times_s, std::span<con
       return fit<2>(times_s, values, at_time_s);
     case 2:
       return fit<3>(times_s, values, at_time_s);
-    case 3:
-      return fit<4>(times_s, values, at_time_s);
-    case 4:
-      return fit<5>(times_s, values, at_time_s);
     default:
-      return fit<6>(times_s, values, at_time_s);
+      return fit<4>(times_s, values, at_time_s);
   }
 }
 

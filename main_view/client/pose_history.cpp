@@ -31,6 +31,12 @@ PoseHistory::Added PoseHistory::add(const TimedPose& sample) {
   require_usable(sample);
   if (!samples_.empty() && sample.time_s < samples_.back().time_s) return Added::ignored;
 
+  const auto velocity_to = [&](const TimedPose& from) {
+    return (sample.pose.position_m - from.pose.position_m) / (sample.time_s - from.time_s);
+  };
+  const bool later = !samples_.empty() && sample.time_s > samples_.back().time_s;
+  const glm::dvec3 velocity = later ? velocity_to(samples_.back()) : last_velocity_m_per_s_;
+
   TimedPose held = sample;
   held.pose.world_from_camera = glm::normalize(sample.pose.world_from_camera);
   Added result = Added::continued;
@@ -50,6 +56,7 @@ PoseHistory::Added PoseHistory::add(const TimedPose& sample) {
       glm::dot(samples_.back().pose.world_from_camera, held.pose.world_from_camera) < 0.0) {
     held.pose.world_from_camera = -held.pose.world_from_camera;
   }
+  last_velocity_m_per_s_ = velocity;
   samples_.push_back(held);
   if (samples_.size() == samples_.capacity()) samples_.erase(samples_.begin());
   newest_as_given_ = sample;
@@ -58,10 +65,15 @@ PoseHistory::Added PoseHistory::add(const TimedPose& sample) {
 
 bool PoseHistory::is_jump(const TimedPose& from, const TimedPose& to) const noexcept {
   const double dt_s = to.time_s - from.time_s;
-  const double moved_m = glm::length(to.pose.position_m - from.pose.position_m);
   const double turned_rad = rotation_angle_rad(from.pose.world_from_camera, to.pose.world_from_camera);
-  return moved_m > options_.jump_distance_m + options_.jump_speed_factor * speed_m_per_s() * dt_s ||
-         turned_rad > options_.jump_rotation_rad + options_.jump_turn_speed_rad_per_s * dt_s;
+  if (turned_rad > options_.jump_rotation_rad + options_.jump_turn_speed_rad_per_s * dt_s) return true;
+
+  const glm::dvec3 step_m = to.pose.position_m - from.pose.position_m;
+  const double explained_m = options_.jump_speed_factor * speed_m_per_s() * dt_s;
+  if (glm::length(step_m) <= options_.jump_distance_m + explained_m) return false;
+  // Right after a jump no speed is known. A fast drive repeats its step, a second teleport does not.
+  const glm::dvec3 expected_m = last_velocity_m_per_s_ * dt_s;
+  return glm::length(step_m - expected_m) > options_.jump_distance_m + 0.5 * glm::length(expected_m);
 }
 
 bool PoseHistory::still() const noexcept {

@@ -70,12 +70,12 @@ class CullingSessionOverLoopback : public ::testing::Test {
   }
 
   void welcome(std::uint64_t session_id) {
-    ASSERT_TRUE(daemon_hears<Hello>());
     Welcome message;
     message.session_id = session_id;
     message.object_count = k_object_count;
-    daemon_->send(message);
+    // Every Hello, as a daemon does: on a busy machine the first may be of a connection already given up.
     ASSERT_TRUE(poll_until([&] {
+      if (daemon_->next<Hello>()) daemon_->send(message);
       return session_->state() == SessionState::open && session_->welcome()->session_id == session_id;
     }));
   }

@@ -44,6 +44,10 @@ const RigEye k_eye{glm::dmat4(1.0), clip_from_camera(Perspective{}, 4.0 / 3.0)};
 const double k_tangent_y = std::tan(30.0 * k_degree);
 const double k_tangent_x = k_tangent_y * 4.0 / 3.0;
 
+bool is_covered(const std::vector<CutOff>& cuts) {
+  return cuts.empty();
+}
+
 bool inside(const Frustum& frustum, const glm::dvec3& point) {
   for (const glm::dvec4& plane : frustum.planes) {
     if (glm::dot(plane, glm::dvec4(point, 1.0)) < 0.0) return false;
@@ -131,8 +135,7 @@ TEST(FieldCoverage, CoversAViewTurnedByLessThanTheGuard) {
     const Pose asked = cases.pose();
     const double guard = cases.uniform(1.0, 25.0) * k_degree;
     const Pose now = cases.near(asked, 0.0, guard);
-    EXPECT_TRUE(
-        cuts_nothing(cutting_sides(eyes_of(asked, {&k_eye, 1})[0], guard, eyes_of(now, {&k_eye, 1})[0])));
+    EXPECT_TRUE(is_covered(cut_offs(eyes_of(asked, {&k_eye, 1})[0], guard, eyes_of(now, {&k_eye, 1})[0])));
   }
 }
 
@@ -143,7 +146,7 @@ TEST(FieldCoverage, DoesNotCoverAViewTurnedByMore) {
     const glm::dquat turn = glm::angleAxis(20.0 * k_degree, glm::dvec3(0.0, 1.0, 0.0));
     const Pose now{asked.position_m, asked.world_from_camera * turn};
     const Eye eye = eyes_of(now, {&k_eye, 1})[0];
-    EXPECT_FALSE(cuts_nothing(cutting_sides(eyes_of(asked, {&k_eye, 1})[0], 10.0 * k_degree, eye)));
+    EXPECT_FALSE(is_covered(cut_offs(eyes_of(asked, {&k_eye, 1})[0], 10.0 * k_degree, eye)));
   }
 }
 
@@ -153,16 +156,16 @@ TEST(FieldCoverage, CoversItselfForAnyProjection) {
   const glm::dmat4 infinite(1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, -1, 0, 0, -0.2, 0);
   for (const glm::dmat4& projection : {k_eye.clip_from_camera, ortho, infinite}) {
     const Eye eye{camera_from_world(cases.pose()), projection};
-    EXPECT_TRUE(cuts_nothing(cutting_sides(eye, 0.0, eye)));
+    EXPECT_TRUE(is_covered(cut_offs(eye, 0.0, eye)));
     Eye other = eye;
     other.camera_from_world = camera_from_world(cases.pose());
-    EXPECT_FALSE(cuts_nothing(cutting_sides(eye, 0.1, other)));
+    EXPECT_FALSE(is_covered(cut_offs(eye, 0.1, other)));
   }
   // An infinite projection widens and covers like a finite one.
   const Eye asked{camera_from_world({}), infinite};
   const Eye turned{camera_from_world({{}, glm::angleAxis(0.05, glm::dvec3(0, 1, 0))}), infinite};
-  EXPECT_TRUE(cuts_nothing(cutting_sides(asked, 0.06, turned)));
-  EXPECT_FALSE(cuts_nothing(cutting_sides(asked, 0.04, turned)));
+  EXPECT_TRUE(is_covered(cut_offs(asked, 0.06, turned)));
+  EXPECT_FALSE(is_covered(cut_offs(asked, 0.04, turned)));
 }
 
 }  // namespace

@@ -84,6 +84,29 @@ TEST(PoseHistory, TakesATeleportForAJumpButNotAFastDrive) {
   }
 }
 
+TEST(PoseHistory, TakesADriveForOneJumpAtMostHoweverLongItsSteps) {
+  for (const double step_m : {0.4, 0.6, 1.5, 10.0}) {
+    PoseHistory history{CullingOptions{}};
+    int jumps = 0;
+    for (int i = 0; i < 100; ++i) {
+      jumps += history.add({i / 60.0, {{i * step_m, 0.0, 0.0}, {1.0, 0.0, 0.0, 0.0}}}) ==
+               PoseHistory::Added::jumped;
+    }
+    EXPECT_LE(jumps, 1) << step_m << " m a frame";
+  }
+}
+
+TEST(PoseHistory, TakesEachOfTwoTeleportsInARowForAJump) {
+  PoseHistory history{CullingOptions{}};
+  const auto add = [&](double time_s, double x_m) {
+    return history.add({time_s, {{x_m, 0.0, 0.0}, {1.0, 0.0, 0.0, 0.0}}});
+  };
+  add(0.0, 0.0);
+  EXPECT_EQ(add(1.0 / 60, 100.0), PoseHistory::Added::jumped);
+  EXPECT_EQ(add(2.0 / 60, -50.0), PoseHistory::Added::jumped);
+  EXPECT_EQ(add(3.0 / 60, -50.1), PoseHistory::Added::continued);
+}
+
 TEST(PoseHistory, StartsAnewAfterAPause) {
   PoseHistory history{CullingOptions{}};
   history.add(at(0.0, 0.0));

@@ -80,8 +80,14 @@ void move_thousand(benchmark::State& state) {
   state.SetItemsProcessed(state.iterations() * 1000);
 }
 
-BENCHMARK(plain_loop)->ArgsProduct({{10'000, 1'000'000}, {0, 1}})->ArgNames({"objects", "whole"})->Unit(benchmark::kMicrosecond);
-BENCHMARK(collect_in_frustum)->ArgsProduct({{10'000, 1'000'000}, {0, 1}})->ArgNames({"objects", "whole"})->Unit(benchmark::kMicrosecond);
+BENCHMARK(plain_loop)
+    ->ArgsProduct({{10'000, 1'000'000}, {0, 1}})
+    ->ArgNames({"objects", "whole"})
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK(collect_in_frustum)
+    ->ArgsProduct({{10'000, 1'000'000}, {0, 1}})
+    ->ArgNames({"objects", "whole"})
+    ->Unit(benchmark::kMicrosecond);
 BENCHMARK(build)->Arg(10'000)->Arg(1'000'000)->Unit(benchmark::kMillisecond);
 BENCHMARK(move_thousand)->Arg(10'000)->Arg(1'000'000)->Unit(benchmark::kMicrosecond);
 

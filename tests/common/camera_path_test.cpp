@@ -1,9 +1,10 @@
+#include "common/camera_path.hpp"
+
 #include <fstream>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "common/camera_path.hpp"
 #include "common/error.hpp"
 #include "tests/common/glb_file.hpp"
 #include "tests/common/test_scenes.hpp"
@@ -27,7 +28,8 @@ std::string refusal_of(const std::string& text) {
 TEST(CameraPath, ReadsBackWhatItWrote) {
   CameraPath path;
   for (int i = 0; i < 100; ++i) {
-    path.samples.push_back({i / 60.0, {{0.1 * i, 1.0 / 3.0, -7e5}, glm::normalize(glm::dquat(1, 0.01 * i, 0.3, 0))}});
+    path.samples.push_back(
+        {i / 60.0, {{0.1 * i, 1.0 / 3.0, -7e5}, glm::normalize(glm::dquat(1, 0.01 * i, 0.3, 0))}});
   }
   const testing::TemporaryFolder folder;
   write_camera_path(folder / "path.csv", path);
@@ -36,7 +38,9 @@ TEST(CameraPath, ReadsBackWhatItWrote) {
   for (std::size_t i = 0; i < path.samples.size(); ++i) {
     EXPECT_EQ(again.samples[i].time_s, path.samples[i].time_s);
     EXPECT_EQ(again.samples[i].pose.position_m, path.samples[i].pose.position_m);
-    EXPECT_LT(rotation_angle_rad(again.samples[i].pose.world_from_camera, path.samples[i].pose.world_from_camera), 1e-14);
+    EXPECT_LT(
+        rotation_angle_rad(again.samples[i].pose.world_from_camera, path.samples[i].pose.world_from_camera),
+        1e-14);
   }
 }
 
@@ -52,7 +56,8 @@ TEST(CameraPath, GivesItsSamplesExactlyAndInterpolatesBetween) {
   EXPECT_EQ(path.at(0.5).position_m, glm::dvec3(1, 0, 0));
   EXPECT_NEAR(rotation_angle_rad(path.at(0.5).world_from_camera, {1, 0, 0, 0}), 0.5, 1e-12);
   // q and -q are the same orientation: nothing turns in between.
-  EXPECT_NEAR(rotation_angle_rad(path.at(1.5).world_from_camera, path.samples[1].pose.world_from_camera), 0.0, 1e-12);
+  EXPECT_NEAR(rotation_angle_rad(path.at(1.5).world_from_camera, path.samples[1].pose.world_from_camera), 0.0,
+              1e-12);
 }
 
 TEST(CameraPath, AcceptsWindowsLineEndsAndATrailingBlankLine) {

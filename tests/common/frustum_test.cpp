@@ -1,3 +1,5 @@
+#include "common/frustum.hpp"
+
 #include <cmath>
 #include <random>
 
@@ -6,7 +8,6 @@
 #include <gtest/gtest.h>
 
 #include "common/bounds.hpp"
-#include "common/frustum.hpp"
 #include "common/view.hpp"
 
 namespace sightline {
@@ -42,14 +43,16 @@ TEST(FrustumCulling, KeepsEveryBoxThatHoldsAPointInside) {
     const glm::dmat4 clip = view_from(eye);
     const Frustum frustum = frustum_of(clip);
     // A corner of the box lies next to a plane, now on this side, now on that.
-    const glm::dvec4 p = glm::inverse(clip) * glm::dvec4(1.0 + 1e-3 * unit(random), unit(random), unit(random), 1.0);
+    const glm::dvec4 p =
+        glm::inverse(clip) * glm::dvec4(1.0 + 1e-3 * unit(random), unit(random), unit(random), 1.0);
     const glm::vec3 corner(glm::dvec3(p) / p.w);
     const float size = static_cast<float>(std::exp(3.0 * unit(random)));
     const Aabb box{corner, corner + glm::vec3(size, 0.01f, 0.01f)};
     bool holds_inside_point = false;
     for (int k = 0; k <= 8; ++k) {
       const glm::dvec4 q = clip * glm::dvec4(glm::dvec3(corner) + glm::dvec3(size * k / 8.0, 0, 0), 1.0);
-      holds_inside_point = holds_inside_point || (std::abs(q.x) <= q.w && std::abs(q.y) <= q.w && std::abs(q.z) <= q.w);
+      holds_inside_point =
+          holds_inside_point || (std::abs(q.x) <= q.w && std::abs(q.y) <= q.w && std::abs(q.z) <= q.w);
     }
     const bool kept = may_intersect(frustum, box);
     EXPECT_TRUE(kept || !holds_inside_point);
@@ -97,7 +100,8 @@ TEST(TransformedBox, HoldsEveryPointInSinglePrecisionToo) {
     const Aabb result = transformed(box, m);
     const glm::mat4 single(m);
     for (int k = 0; k < 8; ++k) {
-      const glm::vec3 corner(k & 1 ? box.max.x : box.min.x, k & 2 ? box.max.y : box.min.y, k & 4 ? box.max.z : box.min.z);
+      const glm::vec3 corner(k & 1 ? box.max.x : box.min.x, k & 2 ? box.max.y : box.min.y,
+                             k & 4 ? box.max.z : box.min.z);
       const glm::vec3 p(single * glm::vec4(corner, 1.0f));
       for (int axis = 0; axis < 3; ++axis) {
         EXPECT_GE(p[axis], result.min[axis]);
@@ -108,7 +112,9 @@ TEST(TransformedBox, HoldsEveryPointInSinglePrecisionToo) {
   }
 }
 
-TEST(TransformedBox, StaysEmpty) { EXPECT_TRUE(transformed(Aabb{}, glm::dmat4(2.0)).empty()); }
+TEST(TransformedBox, StaysEmpty) {
+  EXPECT_TRUE(transformed(Aabb{}, glm::dmat4(2.0)).empty());
+}
 
 }  // namespace
 }  // namespace sightline

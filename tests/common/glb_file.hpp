@@ -28,8 +28,9 @@ struct GlbFile {
     return append("bufferViews", view);
   }
   int add_accessor(int view, int component_type, std::size_t count, const char* type) {
-    return append("accessors",
-                  {{"bufferView", view}, {"componentType", component_type}, {"count", count}, {"type", type}});
+    return append(
+        "accessors",
+        {{"bufferView", view}, {"componentType", component_type}, {"count", count}, {"type", type}});
   }
   int add_positions(const std::vector<float>& xyz) {
     return add_accessor(add_view(xyz), 5126, xyz.size() / 3, "VEC3");
@@ -77,7 +78,8 @@ inline void write_text(const std::filesystem::path& file, const std::string& byt
 inline GlbFile triangle_file() {
   GlbFile file;
   const int positions = file.add_positions({0, 0, 0, 1, 0, 0, 0, 1, 0});
-  const int indices = file.add_accessor(file.add_view(std::vector<std::uint16_t>{0, 1, 2}), 5123, 3, "SCALAR");
+  const int indices =
+      file.add_accessor(file.add_view(std::vector<std::uint16_t>{0, 1, 2}), 5123, 3, "SCALAR");
   file.add_node({{"mesh", file.add_mesh(positions, indices)}});
   file.json["scenes"] = {{{"nodes", {0}}}};
   file.json["scene"] = 0;

@@ -90,8 +90,10 @@ TEST(GltfLoader, KeepsSeveralPrimitivesTogetherAndSharesTheirVertices) {
   const int positions = file.add_positions(k_square);
   const int first = file.add_accessor(file.add_view(std::vector<std::uint16_t>{0, 1, 2}), 5123, 3, "SCALAR");
   const int second = file.add_accessor(file.add_view(std::vector<std::uint16_t>{1, 3, 2}), 5123, 3, "SCALAR");
-  file.append("materials", {{"doubleSided", true}, {"pbrMetallicRoughness", {{"baseColorFactor", {1, 0, 0, 1}}}}});
-  file.append("materials", {{"alphaMode", "BLEND"}, {"pbrMetallicRoughness", {{"baseColorFactor", {0, 0, 1, 0.25}}}}});
+  file.append("materials",
+              {{"doubleSided", true}, {"pbrMetallicRoughness", {{"baseColorFactor", {1, 0, 0, 1}}}}});
+  file.append("materials",
+              {{"alphaMode", "BLEND"}, {"pbrMetallicRoughness", {{"baseColorFactor", {0, 0, 1, 0.25}}}}});
   const auto primitive = [&](int indices, int material) {
     return Json{{"attributes", {{"POSITION", positions}}}, {"indices", indices}, {"material", material}};
   };
@@ -108,10 +110,11 @@ TEST(GltfLoader, KeepsSeveralPrimitivesTogetherAndSharesTheirVertices) {
 
 TEST(GltfLoader, WalksNodesDepthFirstWithMatricesAndParts) {
   GlbFile file = testing::triangle_file();
-  file.json["nodes"] = {{{"children", {2, 1}}, {"translation", {10, 0, 0}}, {"name", "root"}},
-                        {{"mesh", 0}, {"scale", {-1, 1, 1}}, {"name", "mirrored"}},
-                        {{"mesh", 0}, {"children", {3}}, {"rotation", {0, 0, std::sqrt(0.5), std::sqrt(0.5)}}},
-                        {{"mesh", 0}, {"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 5, 0, 1}}}};
+  file.json["nodes"] = {
+      {{"children", {2, 1}}, {"translation", {10, 0, 0}}, {"name", "root"}},
+      {{"mesh", 0}, {"scale", {-1, 1, 1}}, {"name", "mirrored"}},
+      {{"mesh", 0}, {"children", {3}}, {"rotation", {0, 0, std::sqrt(0.5), std::sqrt(0.5)}}},
+      {{"mesh", 0}, {"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 5, 0, 1}}}};
   const Scene scene = load(file);
   ASSERT_EQ(scene.object_count(), 3u);
   EXPECT_EQ(scene.meshes.size(), 1u);  // shared
@@ -151,13 +154,14 @@ TEST(GltfLoader, KeepsMillimetresTwoThousandKilometresAway) {
 
 TEST(GltfLoader, ReadsInterleavedNormalisedAndSparseAccessors) {
   GlbFile interleaved;  // position, then twelve bytes of something else
-  const int view = interleaved.add_view(
-      std::vector<float>{0, 0, 0, 9, 9, 9, 1, 0, 0, 9, 9, 9, 0, 1, 0, 9, 9, 9}, 24);
+  const int view =
+      interleaved.add_view(std::vector<float>{0, 0, 0, 9, 9, 9, 1, 0, 0, 9, 9, 9, 0, 1, 0, 9, 9, 9}, 24);
   interleaved.add_node({{"mesh", interleaved.add_mesh(interleaved.add_accessor(view, 5126, 3, "VEC3"))}});
   EXPECT_EQ(corners_of(load(interleaved)), k_lower_triangle);
 
   GlbFile quantised;  // KHR_mesh_quantization: normalised bytes, four apart
-  const int bytes = quantised.add_view(std::vector<std::int8_t>{0, 0, 0, 99, 127, 0, 0, 99, 0, -128, 0, 99}, 4);
+  const int bytes =
+      quantised.add_view(std::vector<std::int8_t>{0, 0, 0, 99, 127, 0, 0, 99, 0, -128, 0, 99}, 4);
   const int positions = quantised.add_accessor(bytes, 5120, 3, "VEC3");
   quantised.json["accessors"][positions]["normalized"] = true;
   quantised.add_node({{"mesh", quantised.add_mesh(positions)}});
@@ -198,9 +202,10 @@ GlbFile textured_file(const char* alpha_mode) {
   file.append("images", {{"bufferView", file.add_view(encode_png(checks))}, {"mimeType", "image/png"}});
   file.append("samplers", {{"wrapS", 33071}});
   file.append("textures", {{"source", 0}, {"sampler", 0}});
-  file.append("materials", {{"alphaMode", alpha_mode},
-                            {"alphaCutoff", 0.25},
-                            {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}, {"texCoord", 1}}}}}});
+  file.append("materials",
+              {{"alphaMode", alpha_mode},
+               {"alphaCutoff", 0.25},
+               {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}, {"texCoord", 1}}}}}});
   const int uvs = file.add_accessor(file.add_view(std::vector<float>{0, 0, 1, 0, 0, 1}), 5126, 3, "VEC2");
   file.json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_1"] = uvs;
   file.json["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = 0;
@@ -241,8 +246,8 @@ TEST(GltfLoader, ReadsBuffersBesideTheFileAndInside) {
   EXPECT_EQ(external.digest, load(testing::triangle_file()).digest);
 
   // Three bytes of zero are four letters A.
-  file.json["buffers"] = {{{"byteLength", 42},
-                           {"uri", "data:application/octet-stream;base64," + std::string(56, 'A')}}};
+  file.json["buffers"] = {
+      {{"byteLength", 42}, {"uri", "data:application/octet-stream;base64," + std::string(56, 'A')}}};
   testing::write_text(folder / "inside.gltf", file.json.dump());
   EXPECT_EQ(load_scene(folder / "inside.gltf").triangle_count(), 1u);
 }
@@ -273,9 +278,13 @@ TEST(GltfLoader, ReadsTheSharedScenesAsTheirReadmeCountsThem) {
     std::uint32_t objects;
     std::uint64_t triangles;
   };
-  for (const Known& known : {Known{"clinic", 9486, 1354162}, {"clinic_ground", 4603, 482558}, {"denhaag01", 2076, 41183},
-                             {"rotterdam", 9016, 308277}, {"walker_assembly", 1249, 1030054}}) {
-    const Scene scene = load_scene(*shared / "scenes" / (std::string(known.file) + ".glb"), {.shading = false});
+  for (const Known& known : {Known{"clinic", 9486, 1354162},
+                             {"clinic_ground", 4603, 482558},
+                             {"denhaag01", 2076, 41183},
+                             {"rotterdam", 9016, 308277},
+                             {"walker_assembly", 1249, 1030054}}) {
+    const Scene scene =
+        load_scene(*shared / "scenes" / (std::string(known.file) + ".glb"), {.shading = false});
     EXPECT_EQ(scene.object_count(), known.objects) << known.file;
     EXPECT_EQ(scene.triangle_count(), known.triangles) << known.file;
   }

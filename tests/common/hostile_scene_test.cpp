@@ -1,10 +1,12 @@
 #include <chrono>
+#include <cmath>
 #include <random>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "common/error.hpp"
+#include "common/scene/image_codec.hpp"
 #include "common/scene/load_scene.hpp"
 #include "tests/common/glb_file.hpp"
 #include "tests/common/test_scenes.hpp"
@@ -13,10 +15,10 @@ namespace sightline {
 namespace {
 
 using ::testing::AllOf;
+using testing::GlbFile;
 using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
-using testing::GlbFile;
 using testing::TemporaryFolder;
 using Json = nlohmann::json;
 
@@ -34,7 +36,9 @@ std::string refusal_of(const std::string& bytes, const std::string& name = "scen
   return "accepted";
 }
 
-std::string refusal_of(GlbFile file) { return refusal_of(file.glb()); }
+std::string refusal_of(GlbFile file) {
+  return refusal_of(file.glb());
+}
 
 TEST(HostileScene, MissingFoldersAndUnknownKindsAreNamed) {
   EXPECT_THROW((void)load_scene("/nonexistent/a.glb"), InputError);
@@ -133,9 +137,12 @@ TEST(HostileScene, TablesThatNameWhatDoesNotExistAreRefused) {
     return refusal_of(file);
   };
   EXPECT_NE(bent([](Json& j) { j["nodes"][0]["mesh"] = 7; }), "accepted");
-  EXPECT_NE(bent([](Json& j) { j["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = 99; }), "accepted");
-  EXPECT_NE(bent([](Json& j) { j["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = -2; }), "accepted");
-  EXPECT_NE(bent([](Json& j) { j["meshes"][0]["primitives"][0]["attributes"].erase("POSITION"); }), "accepted");
+  EXPECT_NE(bent([](Json& j) { j["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = 99; }),
+            "accepted");
+  EXPECT_NE(bent([](Json& j) { j["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = -2; }),
+            "accepted");
+  EXPECT_NE(bent([](Json& j) { j["meshes"][0]["primitives"][0]["attributes"].erase("POSITION"); }),
+            "accepted");
   EXPECT_NE(bent([](Json& j) { j["meshes"][0]["primitives"][0]["indices"] = 99; }), "accepted");
   EXPECT_NE(bent([](Json& j) { j["meshes"][0]["primitives"][0]["indices"] = 0; }), "accepted");  // floats
   EXPECT_NE(bent([](Json& j) { j["meshes"][0]["primitives"][0]["material"] = 4; }), "accepted");
@@ -143,9 +150,14 @@ TEST(HostileScene, TablesThatNameWhatDoesNotExistAreRefused) {
   EXPECT_NE(bent([](Json& j) { j["accessors"][0]["type"] = "MAT4"; }), "accepted");
   EXPECT_NE(bent([](Json& j) { j["accessors"][0]["componentType"] = 5124; }), "accepted");
   EXPECT_NE(bent([](Json& j) { j["bufferViews"][0]["buffer"] = 99; }), "accepted");
-  EXPECT_THAT(bent([](Json& j) { j.erase("nodes"); j.erase("scenes"); }), HasSubstr("no object"));
+  EXPECT_THAT(bent([](Json& j) {
+                j.erase("nodes");
+                j.erase("scenes");
+              }),
+              HasSubstr("no object"));
   EXPECT_THAT(bent([](Json& j) { j["nodes"][0].erase("mesh"); }), HasSubstr("no object"));
-  EXPECT_THAT(bent([](Json& j) { j["extensionsRequired"] = {"KHR_draco_mesh_compression"}; }), HasSubstr("draco"));
+  EXPECT_THAT(bent([](Json& j) { j["extensionsRequired"] = {"KHR_draco_mesh_compression"}; }),
+              HasSubstr("draco"));
 }
 
 TEST(HostileScene, ClaimsBeyondTheFileAreRefusedBeforeAnyAllocation) {
@@ -156,24 +168,28 @@ TEST(HostileScene, ClaimsBeyondTheFileAreRefusedBeforeAnyAllocation) {
     return refusal_of(file);
   };
   // Ten gigabytes in a kilobyte, in every place that can claim them.
-  constexpr std::uint64_t k_huge = 10'000'000'000;
+  static constexpr std::uint64_t k_huge = 10'000'000'000;
   EXPECT_NE(bent([](GlbFile& f) { f.json["buffers"] = {{{"byteLength", k_huge}}}; }), "accepted");
   EXPECT_NE(bent([](GlbFile& f) { f.json["bufferViews"][0]["byteLength"] = k_huge; }), "accepted");
   EXPECT_NE(bent([](GlbFile& f) { f.json["bufferViews"][0]["byteOffset"] = k_huge; }), "accepted");
-  EXPECT_NE(bent([](GlbFile& f) { f.json["bufferViews"][0]["byteOffset"] = ~std::uint64_t{0} - 8; }), "accepted");
+  EXPECT_NE(bent([](GlbFile& f) { f.json["bufferViews"][0]["byteOffset"] = ~std::uint64_t{0} - 8; }),
+            "accepted");
   EXPECT_NE(bent([](GlbFile& f) { f.json["accessors"][0]["count"] = k_huge; }), "accepted");
   EXPECT_NE(bent([](GlbFile& f) { f.json["accessors"][0]["count"] = std::uint64_t{1} << 62; }), "accepted");
-  EXPECT_NE(bent([](GlbFile& f) { f.json["accessors"][0]["byteOffset"] = ~std::uint64_t{0} - 3; }), "accepted");
+  EXPECT_NE(bent([](GlbFile& f) { f.json["accessors"][0]["byteOffset"] = ~std::uint64_t{0} - 3; }),
+            "accepted");
   EXPECT_NE(bent([](GlbFile& f) { f.json["accessors"][0]["count"] = 4; }), "accepted");
   EXPECT_NE(bent([](GlbFile& f) {
               f.json["accessors"][0].erase("bufferView");
               f.json["accessors"][0]["count"] = k_huge;
-            }), "accepted");
+            }),
+            "accepted");
   EXPECT_NE(bent([](GlbFile& f) { f.json["bufferViews"][0]["byteStride"] = k_huge; }), "accepted");
   EXPECT_NE(bent([](GlbFile& f) {
               f.json["buffers"] = Json::array();
               for (int i = 0; i < 1000; ++i) f.json["buffers"].push_back({{"byteLength", f.bin.size()}});
-            }), "accepted");
+            }),
+            "accepted");
   // Overlapping views: a thousand accessors without bytes of their own.
   EXPECT_NE(bent([](GlbFile& f) {
               f.json["accessors"][0].erase("bufferView");
@@ -184,7 +200,8 @@ TEST(HostileScene, ClaimsBeyondTheFileAreRefusedBeforeAnyAllocation) {
                 primitives.push_back({{"attributes", {{"POSITION", 2 + i}}}});
               }
               f.json["meshes"][0]["primitives"] = primitives;
-            }), "accepted");
+            }),
+            "accepted");
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
 }
 
@@ -204,12 +221,36 @@ TEST(HostileScene, FilesOutsideTheScenesFolderAreNotRead) {
   EXPECT_THROW((void)load_scene(folder / "scene" / "a.gltf"), InputError);
 }
 
-TEST(HostileScene, ImagesThatCannotBeDecodedAreRefused) {
+GlbFile file_with_image(const std::vector<std::uint8_t>& image) {
   GlbFile file = testing::triangle_file();
-  file.append("images", {{"bufferView", file.add_view(std::vector<std::uint8_t>(64, 7))}, {"mimeType", "image/png"}});
+  file.append("images", {{"bufferView", file.add_view(image)}, {"mimeType", "image/png"}});
   file.append("textures", {{"source", 0}});
   file.append("materials", {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}});
-  EXPECT_EQ(refusal_of(file), "accepted");  // no primitive has the material's image decoded... unless it is listed
+  return file;
+}
+
+TEST(HostileScene, ImagesThatCannotBeDecodedAreRefused) {
+  EXPECT_THAT(refusal_of(file_with_image(std::vector<std::uint8_t>(64, 7))), HasSubstr("image 0"));
+  Texture texture;
+  texture.width = texture.height = 16;
+  texture.rgba.assign(16 * 16 * 4, 100);
+  std::vector<std::uint8_t> png = encode_png(texture);
+  EXPECT_EQ(refusal_of(file_with_image(png)), "accepted");
+  EXPECT_NE(refusal_of(file_with_image({png.begin(), png.end() - 30})), "accepted");
+  std::vector<std::uint8_t> bomb = png;
+  bomb[18] = bomb[22] = 0x40;  // claims 16400 x 16400
+  EXPECT_NE(refusal_of(file_with_image(bomb)), "accepted");
+  bomb[18] = bomb[22] = 0x3f;  // claims 16144 x 16144, within the decoder's own limit
+  EXPECT_THAT(refusal_of(file_with_image(bomb)), HasSubstr("pixels in"));
+  GlbFile nowhere = file_with_image(png);
+  nowhere.json["images"][0]["bufferView"] = 99;
+  EXPECT_NE(refusal_of(nowhere), "accepted");
+  GlbFile beyond = file_with_image(png);
+  beyond.json["bufferViews"][2]["byteOffset"] = 4000000000u;
+  EXPECT_NE(refusal_of(beyond), "accepted");
+  GlbFile missing = file_with_image(png);
+  missing.json["images"][0] = {{"uri", "missing.png"}};
+  EXPECT_THAT(refusal_of(missing), HasSubstr("missing.png"));
 }
 
 TEST(HostileScene, EveryTruncationIsRefusedAndNoFlippedBitCrashes) {

@@ -1,3 +1,5 @@
+#include "common/object_hierarchy.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -6,7 +8,6 @@
 #include <glm/gtc/quaternion.hpp>
 #include <gtest/gtest.h>
 
-#include "common/object_hierarchy.hpp"
 #include "common/sort_object_ids.hpp"
 #include "common/view.hpp"
 
@@ -27,7 +28,8 @@ std::vector<Aabb> random_boxes(std::size_t count, std::uint64_t seed, float spre
 
 Frustum random_frustum(std::mt19937_64& random) {
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
-  const glm::dquat rotation = glm::normalize(glm::dquat(unit(random), unit(random), unit(random), unit(random)));
+  const glm::dquat rotation =
+      glm::normalize(glm::dquat(unit(random), unit(random), unit(random), unit(random)));
   const Pose pose{80.0 * glm::dvec3(unit(random), unit(random), unit(random)), rotation};
   return frustum_of(clip_from_camera({0.9, 0.1, 60.0 + 50.0 * unit(random)}, 1.4) * camera_from_world(pose));
 }

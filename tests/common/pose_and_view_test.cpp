@@ -43,8 +43,8 @@ TEST(Pose, MeasuresTinyAndHalfTurnsAlike) {
 TEST(ImageSizeText, IsReadStrictly) {
   EXPECT_EQ(parse_image_size("512x384"), (ImageSize{512, 384}));
   EXPECT_EQ(parse_image_size("16384x1"), (ImageSize{16384, 1}));
-  for (const char* text : {"", "x", "512", "512x", "x384", "0x384", "512x0", "16385x1", "1x1000000", "-1x5", "5x5 ",
-                           "5 x5", "5X5", "99999999999x1", "1x1x1", "1.5x2", "+1x1"}) {
+  for (const char* text : {"", "x", "512", "512x", "x384", "0x384", "512x0", "16385x1", "1x1000000", "-1x5",
+                           "5x5 ", "5 x5", "5X5", "99999999999x1", "1x1x1", "1.5x2", "+1x1"}) {
     EXPECT_FALSE(parse_image_size(text)) << text;
   }
 }

@@ -19,7 +19,9 @@ std::optional<fs::path> shared_folder() {
   return fs::canonical(folder);
 }
 
-fs::path scenes_folder() { return fs::path(SIGHTLINE_SOURCE_DIR) / "scenes"; }
+fs::path scenes_folder() {
+  return fs::path(SIGHTLINE_SOURCE_DIR) / "scenes";
+}
 
 TemporaryFolder::TemporaryFolder() {
   std::string name = (fs::temp_directory_path() / "sightline-test-XXXXXX").string();
@@ -79,11 +81,13 @@ ObjectId SceneBuilder::add_box(const glm::dvec3& center, const glm::dvec3& size,
 
 ObjectId SceneBuilder::add_wall(const glm::dvec3& center, double width, double height, std::uint32_t material,
                                 double yaw_rad) {
-  const glm::dmat4 turned = glm::rotate(glm::translate(glm::dmat4(1.0), center), yaw_rad, glm::dvec3(0, 1, 0));
+  const glm::dmat4 turned =
+      glm::rotate(glm::translate(glm::dmat4(1.0), center), yaw_rad, glm::dvec3(0, 1, 0));
   return add_object(quad_mesh(material), glm::scale(turned, glm::dvec3(width, height, 1.0)));
 }
 
-ObjectId SceneBuilder::add_ground(const glm::dvec3& center, double size_x, double size_z, std::uint32_t material) {
+ObjectId SceneBuilder::add_ground(const glm::dvec3& center, double size_x, double size_z,
+                                  std::uint32_t material) {
   // Columns written out: a rotation by pi/2 would leave 6e-17 where a zero belongs.
   glm::dmat4 lying(0.0);
   lying[0] = {size_x, 0.0, 0.0, 0.0};

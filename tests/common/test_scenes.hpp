@@ -15,8 +15,8 @@
 
 namespace sightline::testing {
 
-/// The folder `shared` beside the project, where the large test scenes and traces lie. Empty where it is absent:
-/// the test then skips.
+/// The folder `shared` beside the project, where the large test scenes and traces lie. Empty where it is
+/// absent: the test then skips.
 [[nodiscard]] std::optional<std::filesystem::path> shared_folder();
 
 /// The project's own scenes/ folder.

@@ -117,7 +117,7 @@ TEST(ControlViewCli, RefusesBadInputWithOneLineAndCode2) {
   expect_refusal({"--scene", scene, "--counter", "abacus"}, 2, "abacus");
   expect_refusal({"--scene", scene, "--size", "0x0"}, 2, "--size");
   expect_refusal({"--scene", scene, "--size", "1000000x1000000"}, 2, "--size");
-  expect_refusal({"--scene", scene, "--bind", "carrier-pigeon"}, 2, "carrier-pigeon");
+  expect_refusal({"--scene", triangle_scene(folder), "--bind", "carrier-pigeon"}, 2, "carrier-pigeon");
   expect_refusal({"--scene", "/nowhere/city.glb", "--bind", "tcp://127.0.0.1:*"}, 2, "/nowhere/city.glb");
   expect_refusal({"--scene", scene, "--keys", "/nowhere/keys.toml"}, 2, "/nowhere/keys.toml");
   expect_refusal({"--bind", "tcp://127.0.0.1:*"}, 2, "--scene");
