@@ -24,6 +24,6 @@ COPY LICENSE /usr/local/share/sightline/
 USER sightline
 EXPOSE 5555
 HEALTHCHECK --interval=2s --timeout=5s --start-period=60s --retries=5 \
-  CMD ["control_view", "ping", "--connect", "tcp://127.0.0.1:5555"]
-CMD ["control_view", "serve", "--bind", "tcp://0.0.0.0:5555", \
+  CMD ["control_view", "ping", "--connect", "tcp://127.0.0.1:5571"]
+CMD ["control_view", "serve", "--bind", "tcp://0.0.0.0:5571", \
      "--scene", "/usr/local/share/sightline/scenes/clinic_ground.glb"]

@@ -23,9 +23,12 @@ std::string Context::description() const {
 
 std::unique_ptr<Context> make_offscreen_context(ContextKind kind) {
   switch (kind) {
-    case ContextKind::osmesa: return make_osmesa_context();
-    case ContextKind::egl: return make_egl_context();
-    case ContextKind::glfw: return make_glfw_context({16, 16}, "sightline", false);
+    case ContextKind::osmesa:
+      return make_osmesa_context();
+    case ContextKind::egl:
+      return make_egl_context();
+    case ContextKind::glfw:
+      return make_glfw_context({16, 16}, "sightline", false);
   }
   throw InputError("context: choose osmesa, egl or glfw");
 }

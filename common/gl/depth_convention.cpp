@@ -5,8 +5,8 @@
 namespace sightline::gl {
 
 glm::mat4 depth_clip_from_scene(const Eye& eye, const glm::dvec3& world_origin_m) {
-  // OpenGL depth runs over -w .. w, near to far; ours over w .. 0: z' = (w - z) / 2, a linear map of the rows,
-  // taken while the matrix is still in double so that nothing is lost to cancellation.
+  // OpenGL depth runs over -w .. w, near to far; ours over w .. 0: z' = (w - z) / 2, a linear map of the
+  // rows, taken while the matrix is still in double so that nothing is lost to cancellation.
   const glm::dmat4 clip = eye.clip_from_world() * glm::translate(glm::dmat4(1.0), world_origin_m);
   glm::dmat4 reversed = clip;
   for (int column = 0; column < 4; ++column) {

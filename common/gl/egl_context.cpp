@@ -1,10 +1,10 @@
-#include <EGL/egl.h>
-#include <EGL/eglext.h>
-
 #include <array>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include <EGL/egl.h>
+#include <EGL/eglext.h>
 
 #include "common/error.hpp"
 #include "common/gl/context_kinds.hpp"
@@ -46,8 +46,8 @@ class EglContext final : public Context {
     for (EGLDisplay display : candidate_displays()) {
       if (display != EGL_NO_DISPLAY && open(display)) return;
     }
-    throw MachineError("eglInitialize/eglCreateContext: no display gives an OpenGL 4.5 core context " + reason_ +
-                       " (Debian: install libegl1, or use --context osmesa)");
+    throw MachineError("eglInitialize/eglCreateContext: no display gives an OpenGL 4.5 core context " +
+                       reason_ + " (Debian: install libegl1, or use --context osmesa)");
   }
   ~EglContext() override {
     eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
@@ -94,6 +94,8 @@ class EglContext final : public Context {
 
 }  // namespace
 
-std::unique_ptr<Context> make_egl_context() { return std::make_unique<EglContext>(); }
+std::unique_ptr<Context> make_egl_context() {
+  return std::make_unique<EglContext>();
+}
 
 }  // namespace sightline::gl

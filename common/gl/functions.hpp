@@ -1,7 +1,7 @@
 #pragma once
 
-// Entry points of OpenGL 4.5 core, loaded at run time. Debian 12 has no glad, and its glbinding cannot load through
-// OSMesaGetProcAddress, so the list of what we call lives here.
+// Entry points of OpenGL 4.5 core, loaded at run time. Debian 12 has no glad, and its glbinding cannot load
+// through OSMesaGetProcAddress, so the list of what we call lives here.
 
 #include <GL/glcorearb.h>
 

@@ -35,7 +35,9 @@ Buffer uploaded(const std::vector<T>& values, GLbitfield flags = 0) {
   return buffer;
 }
 
-bool turns_winding(const glm::dmat4& transform) { return glm::determinant(glm::dmat3(transform)) < 0.0; }
+bool turns_winding(const glm::dmat4& transform) {
+  return glm::determinant(glm::dmat3(transform)) < 0.0;
+}
 
 }  // namespace
 
@@ -150,7 +152,8 @@ void GpuScene::upload_materials(const Scene& scene) {
 void GpuScene::upload_textures(const Scene& scene, bool with_shading) {
   std::vector<std::uint8_t> wanted(scene.textures.size(), with_shading ? 1 : 0);
   for (const Material& material : scene.materials) {
-    if (material.alpha_mode == AlphaMode::mask && material.texture < wanted.size()) wanted[material.texture] = 1;
+    if (material.alpha_mode == AlphaMode::mask && material.texture < wanted.size())
+      wanted[material.texture] = 1;
   }
   textures_.resize(scene.textures.size());
   for (std::size_t i = 0; i < scene.textures.size(); ++i) {
@@ -185,8 +188,8 @@ void GpuScene::set_transforms(std::span<const ObjectId> ids, std::span<const glm
     const std::uint32_t object = index_of(ids[i]);
     const glm::mat4 placement(scene_from_object[i]);
     mirrored_[object] = turns_winding(scene_from_object[i]) ? 1 : 0;
-    glNamedBufferSubData(transforms_.get(), static_cast<GLintptr>(object * sizeof(glm::mat4)), sizeof(placement),
-                         glm::value_ptr(placement));
+    glNamedBufferSubData(transforms_.get(), static_cast<GLintptr>(object * sizeof(glm::mat4)),
+                         sizeof(placement), glm::value_ptr(placement));
   }
 }
 
@@ -254,17 +257,15 @@ void GpuScene::submit(std::size_t group_index, const PassPrograms& programs) {
 bool GpuScene::has_layer(Layer layer, ObjectId id) const noexcept {
   const auto first = items_.begin() + first_item_[index_of(id)];
   const auto last = items_.begin() + first_item_[index_of(id) + 1];
-  return std::any_of(first, last, [layer](const DrawItem& item) {
-    return item.layer == layer && item.index_count > 0;
-  });
+  return std::any_of(first, last,
+                     [layer](const DrawItem& item) { return item.layer == layer && item.index_count > 0; });
 }
 
 std::uint64_t GpuScene::triangle_count(ObjectId id) const noexcept {
   const auto first = items_.begin() + first_item_[index_of(id)];
   const auto last = items_.begin() + first_item_[index_of(id) + 1];
-  return std::accumulate(first, last, std::uint64_t{0}, [](std::uint64_t sum, const DrawItem& item) {
-    return sum + item.index_count / 3;
-  });
+  return std::accumulate(first, last, std::uint64_t{0},
+                         [](std::uint64_t sum, const DrawItem& item) { return sum + item.index_count / 3; });
 }
 
 }  // namespace sightline::gl

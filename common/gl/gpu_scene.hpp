@@ -21,8 +21,8 @@ struct DrawStats {
   std::uint64_t triangles = 0;
 };
 
-/// The programs of a pass. `mask` is for materials with an alpha test; a pass that has none uses one program twice.
-/// Kept apart because a shader that may discard loses the early depth test for every fragment.
+/// The programs of a pass. `mask` is for materials with an alpha test; a pass that has none uses one program
+/// twice. Kept apart because a shader that may discard loses the early depth test for every fragment.
 struct PassPrograms {
   GLuint solid = 0;
   GLuint mask = 0;
@@ -30,22 +30,24 @@ struct PassPrograms {
 
 /// A scene's geometry on the GPU, and the one order in which everybody draws it.
 ///
-/// Why one order: where two surfaces coincide, the first drawn wins the depth test. The control view, the audit
-/// and the renderer therefore draw the same sequence, so that leaving hidden objects out never changes who wins.
+/// Why one order: where two surfaces coincide, the first drawn wins the depth test. The control view, the
+/// audit and the renderer therefore draw the same sequence, so that leaving hidden objects out never changes
+/// who wins.
 ///
 /// Vertex inputs and storage blocks are those of k_transform_glsl.
 class GpuScene {
  public:
   /// Uploads. `with_shading` adds normals, uvs of every material and all textures; otherwise uvs and textures
-  /// are there for mask materials only. `scene` may be destroyed afterwards. Throws MachineError out of memory.
+  /// are there for mask materials only. `scene` may be destroyed afterwards. Throws MachineError out of
+  /// memory.
   GpuScene(const Scene& scene, bool with_shading);
 
   /// Sets the placement of objects, scene frame. Cost follows their number.
   void set_transforms(std::span<const ObjectId> ids, std::span<const glm::dmat4> scene_from_object);
 
   /// Draws one layer of `ids` (ascending). Sets program, culling, winding and texture unit 0; colour, depth,
-  /// stencil and blend state and the programs' own uniforms are the caller's. A program's uniform `u_textured`
-  /// (int), where it has one, says whether unit 0 holds the material's texture.
+  /// stencil and blend state and the programs' own uniforms are the caller's. A program's uniform
+  /// `u_textured` (int), where it has one, says whether unit 0 holds the material's texture.
   DrawStats draw(Layer layer, std::span<const ObjectId> ids, const PassPrograms& programs);
 
   [[nodiscard]] std::uint32_t object_count() const noexcept {
@@ -83,8 +85,8 @@ class GpuScene {
 
   glm::dvec3 world_origin_m_{0.0};
   std::vector<DrawItem> items_;
-  std::vector<std::uint32_t> first_item_;    ///< of each object, and one past the last
-  std::vector<std::uint8_t> mirrored_;       ///< per object: its placement turns the winding
+  std::vector<std::uint32_t> first_item_;  ///< of each object, and one past the last
+  std::vector<std::uint8_t> mirrored_;     ///< per object: its placement turns the winding
   std::array<GroupCommands, k_group_count> groups_;
 
   VertexArray vertex_array_;
@@ -97,22 +99,26 @@ class GpuScene {
 ///   inputs        0 in_position vec3, 1 in_normal vec3, 2 in_uv vec2, 3 in_object uint, 4 in_material uint
 ///   storage 0     scene_from_object[], mat4 per object
 ///   location 0    uniform mat4 u_clip_from_scene, reversed depth: see depth_clip_from_scene
-///   functions     vec4 scene_position(); vec4 clip_position();  // use these, so that depth agrees to the bit
+///   functions     vec4 scene_position(); vec4 clip_position();  // use these, so that depth agrees to the
+///   bit
 /// and gl_Position as invariant.
 extern const char* const k_transform_glsl;
 
 /// GLSL for the fragment stage, from its #version line on. Declares
 ///   storage 1     materials[], struct { vec4 base_color; vec4 alpha_cutoff; } (cutoff in .x)
 ///   unit 0        uniform sampler2D u_texture
-///   function      bool alpha_passes(vec2 uv, uint material);  // the mask test, the same in every pass: level 0
+///   function      bool alpha_passes(vec2 uv, uint material);  // the mask test, the same in every pass:
+///   level 0
 extern const char* const k_material_glsl;
 
-/// clip_from_scene with depth reversed to [1 near .. 0 far], for glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE),
-/// GL_GREATER and a depth clear of 0. A float depth buffer then keeps about the same relative precision at every
-/// distance (Reed, "Depth Precision Visualized", 2015). Computed in double, rounded once.
+/// clip_from_scene with depth reversed to [1 near .. 0 far], for glClipControl(GL_LOWER_LEFT,
+/// GL_ZERO_TO_ONE), GL_GREATER and a depth clear of 0. A float depth buffer then keeps about the same
+/// relative precision at every distance (Reed, "Depth Precision Visualized", 2015). Computed in double,
+/// rounded once.
 [[nodiscard]] glm::mat4 depth_clip_from_scene(const Eye& eye, const glm::dvec3& world_origin_m);
 
-/// Sets the depth convention above on the current context: clip control, clear depth, depth test and writes on.
+/// Sets the depth convention above on the current context: clip control, clear depth, depth test and writes
+/// on.
 void apply_depth_convention();
 
 }  // namespace sightline::gl

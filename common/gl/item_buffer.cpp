@@ -46,7 +46,9 @@ layout(location = 0) out uint out_mark;
 void main() { out_mark = 1u; }
 )";
 
-std::string vertex_source() { return std::string(k_transform_glsl) + k_item_vertex_glsl_body; }
+std::string vertex_source() {
+  return std::string(k_transform_glsl) + k_item_vertex_glsl_body;
+}
 
 }  // namespace
 
@@ -94,8 +96,8 @@ void ItemBuffer::bind(const std::optional<PixelRect>& rect) const {
   glViewport(0, 0, static_cast<GLsizei>(size_.width), static_cast<GLsizei>(size_.height));
   if (rect) {
     glEnable(GL_SCISSOR_TEST);
-    glScissor(static_cast<GLint>(rect->x), static_cast<GLint>(rect->y), static_cast<GLsizei>(rect->size.width),
-              static_cast<GLsizei>(rect->size.height));
+    glScissor(static_cast<GLint>(rect->x), static_cast<GLint>(rect->y),
+              static_cast<GLsizei>(rect->size.width), static_cast<GLsizei>(rect->size.height));
   } else {
     glDisable(GL_SCISSOR_TEST);
   }

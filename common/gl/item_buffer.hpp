@@ -19,11 +19,13 @@ struct PixelRect {
   ImageSize size;
 };
 
-/// An image whose pixels hold object codes (R32UI), with its depth (32F) and stencil: no texture, light, blending,
-/// dithering or multisampling. control_view draws it to see, main_view to audit; both call this one class.
+/// An image whose pixels hold object codes (R32UI), with its depth (32F) and stencil: no texture, light,
+/// blending, dithering or multisampling. control_view draws it to see, main_view to audit; both call this one
+/// class.
 ///
-/// Every call draws into `rect` alone, the whole image by default. The rectangle is cut by the scissor test, so
-/// that vertices land on the same sub-pixel positions and a part equals that part of the whole, bit for bit.
+/// Every call draws into `rect` alone, the whole image by default. The rectangle is cut by the scissor test,
+/// so that vertices land on the same sub-pixel positions and a part equals that part of the whole, bit for
+/// bit.
 class ItemBuffer {
  public:
   explicit ItemBuffer(ImageSize size);
@@ -32,23 +34,25 @@ class ItemBuffer {
   DrawStats draw(GpuScene& scene, const Eye& eye, std::span<const ObjectId> ids,
                  const std::optional<PixelRect>& rect = {});
 
-  /// Adds to `pixels[i]` the pixels in which blended object `ids[i]` has a fragment in front of the opaque depth.
-  /// Each pixel counts once an object. Call after draw, with the same eye and rectangle.
+  /// Adds to `pixels[i]` the pixels in which blended object `ids[i]` has a fragment in front of the opaque
+  /// depth. Each pixel counts once an object. Call after draw, with the same eye and rectangle.
   DrawStats count_blended(GpuScene& scene, const Eye& eye, std::span<const ObjectId> ids,
                           std::span<std::uint32_t> pixels, const std::optional<PixelRect>& rect = {});
 
-  /// Sets to 1 each pixel of the mask (R8UI, see blended_mask) where any blended object of `ids` has a fragment
-  /// in front of the opaque depth, to 0 every other, and reads it: rows from the bottom.
+  /// Sets to 1 each pixel of the mask (R8UI, see blended_mask) where any blended object of `ids` has a
+  /// fragment in front of the opaque depth, to 0 every other, and reads it: rows from the bottom.
   void read_blended_mask(GpuScene& scene, const Eye& eye, std::span<const ObjectId> ids,
                          std::vector<std::uint8_t>& mask);
 
   /// Codes of `rect`, rows from the bottom; resized to its pixel count.
   void read(std::vector<ItemCode>& codes, const std::optional<PixelRect>& rect = {}) const;
 
-  /// Binds the buffer and sets viewport, scissor and the depth convention, for passes of others that draw on it.
+  /// Binds the buffer and sets viewport, scissor and the depth convention, for passes of others that draw on
+  /// it.
   void bind(const std::optional<PixelRect>& rect = {}) const;
 
-  /// The same with no colour attachment, so that a pass may sample code_texture() while it tests against depth.
+  /// The same with no colour attachment, so that a pass may sample code_texture() while it tests against
+  /// depth.
   void bind_depth_only(const std::optional<PixelRect>& rect = {}) const;
 
   [[nodiscard]] ImageSize size() const noexcept { return size_; }

@@ -56,11 +56,21 @@ void link(const char* name, GLuint program) {
 
 }  // namespace
 
-Buffer make_buffer() { return Buffer(created(glCreateBuffers)); }
-TextureName make_texture(GLenum target) { return TextureName(created(glCreateTextures, target)); }
-Framebuffer make_framebuffer() { return Framebuffer(created(glCreateFramebuffers)); }
-VertexArray make_vertex_array() { return VertexArray(created(glCreateVertexArrays)); }
-Query make_query(GLenum target) { return Query(created(glCreateQueries, target)); }
+Buffer make_buffer() {
+  return Buffer(created(glCreateBuffers));
+}
+TextureName make_texture(GLenum target) {
+  return TextureName(created(glCreateTextures, target));
+}
+Framebuffer make_framebuffer() {
+  return Framebuffer(created(glCreateFramebuffers));
+}
+VertexArray make_vertex_array() {
+  return VertexArray(created(glCreateVertexArrays));
+}
+Query make_query(GLenum target) {
+  return Query(created(glCreateQueries, target));
+}
 
 Program make_program(const char* name, const char* vertex_glsl, const char* fragment_glsl) {
   const Shader vertex(name, GL_VERTEX_SHADER, vertex_glsl);

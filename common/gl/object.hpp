@@ -27,12 +27,24 @@ class Handle {
   GLuint name_ = 0;
 };
 
-struct BufferTraits { static void destroy(GLuint n) { glDeleteBuffers(1, &n); } };
-struct TextureTraits { static void destroy(GLuint n) { glDeleteTextures(1, &n); } };
-struct FramebufferTraits { static void destroy(GLuint n) { glDeleteFramebuffers(1, &n); } };
-struct VertexArrayTraits { static void destroy(GLuint n) { glDeleteVertexArrays(1, &n); } };
-struct ProgramTraits { static void destroy(GLuint n) { glDeleteProgram(n); } };
-struct QueryTraits { static void destroy(GLuint n) { glDeleteQueries(1, &n); } };
+struct BufferTraits {
+  static void destroy(GLuint n) { glDeleteBuffers(1, &n); }
+};
+struct TextureTraits {
+  static void destroy(GLuint n) { glDeleteTextures(1, &n); }
+};
+struct FramebufferTraits {
+  static void destroy(GLuint n) { glDeleteFramebuffers(1, &n); }
+};
+struct VertexArrayTraits {
+  static void destroy(GLuint n) { glDeleteVertexArrays(1, &n); }
+};
+struct ProgramTraits {
+  static void destroy(GLuint n) { glDeleteProgram(n); }
+};
+struct QueryTraits {
+  static void destroy(GLuint n) { glDeleteQueries(1, &n); }
+};
 
 using Buffer = Handle<BufferTraits>;
 using TextureName = Handle<TextureTraits>;

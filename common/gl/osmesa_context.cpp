@@ -34,7 +34,8 @@ class OsmesaContext final : public Context {
                                                 0};
     context_ = OSMesaCreateContextAttribs(attributes.data(), nullptr);
     if (context_ == nullptr) {
-      throw MachineError("OSMesaCreateContextAttribs: no OpenGL 4.5 core context (Debian: install libosmesa6)");
+      throw MachineError(
+          "OSMesaCreateContextAttribs: no OpenGL 4.5 core context (Debian: install libosmesa6)");
     }
     make_current();
     load_functions([](const char* name) { return reinterpret_cast<void*>(OSMesaGetProcAddress(name)); });
@@ -56,6 +57,8 @@ class OsmesaContext final : public Context {
 
 }  // namespace
 
-std::unique_ptr<Context> make_osmesa_context() { return std::make_unique<OsmesaContext>(); }
+std::unique_ptr<Context> make_osmesa_context() {
+  return std::make_unique<OsmesaContext>();
+}
 
 }  // namespace sightline::gl

@@ -1,11 +1,11 @@
 #include "control_view/engines/histogram.hpp"
 
-#include <immintrin.h>
-
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <utility>
+
+#include <immintrin.h>
 
 namespace sightline {
 
@@ -29,10 +29,10 @@ void add_plain(std::span<const ItemCode> codes, CountAccumulator& sum) {
   for (const ItemCode code : codes) add_run(code, 1, sum);
 }
 
-/// Adds the runs that end at the set bits of `ends`: bit b says that pixel first + b differs from the one before.
-/// `run_start` is where the current run began, and moves on.
-inline void add_ended_runs(std::uint64_t ends, std::size_t first, const ItemCode* codes, std::size_t& run_start,
-                           CountAccumulator& sum) {
+/// Adds the runs that end at the set bits of `ends`: bit b says that pixel first + b differs from the one
+/// before. `run_start` is where the current run began, and moves on.
+inline void add_ended_runs(std::uint64_t ends, std::size_t first, const ItemCode* codes,
+                           std::size_t& run_start, CountAccumulator& sum) {
   while (ends != 0) {
     const std::size_t end = first + static_cast<std::size_t>(std::countr_zero(ends));
     add_run(codes[run_start], end - run_start, sum);
@@ -42,7 +42,8 @@ inline void add_ended_runs(std::uint64_t ends, std::size_t first, const ItemCode
 }
 
 /// Runs in what the vector loop left over, and the last run.
-void add_tail(std::span<const ItemCode> codes, std::size_t from, std::size_t run_start, CountAccumulator& sum) {
+void add_tail(std::span<const ItemCode> codes, std::size_t from, std::size_t run_start,
+              CountAccumulator& sum) {
   for (std::size_t i = from; i < codes.size(); ++i) {
     if (codes[i] == codes[i - 1]) continue;
     add_run(codes[run_start], i - run_start, sum);
@@ -62,8 +63,8 @@ __attribute__((target("avx2"))) void add_avx2(std::span<const ItemCode> codes, C
     for (std::size_t lane = 0; lane < k_block; lane += 8) {
       const __m256i here = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(p + i + lane));
       const __m256i before = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(p + i + lane - 1));
-      const auto equal = static_cast<unsigned>(
-          _mm256_movemask_ps(_mm256_castsi256_ps(_mm256_cmpeq_epi32(here, before))));
+      const auto equal =
+          static_cast<unsigned>(_mm256_movemask_ps(_mm256_castsi256_ps(_mm256_cmpeq_epi32(here, before))));
       same |= std::uint64_t{equal} << lane;
     }
     add_ended_runs(~same, i, p, run_start, sum);
@@ -106,7 +107,8 @@ std::span<const HistogramKernel> histogram_kernels() {
 void add_histogram(std::span<const ItemCode> codes, CountAccumulator& sum) {
   static const auto best = [] {
     const auto kernels = histogram_kernels();
-    return std::find_if(kernels.rbegin(), kernels.rend(), [](const auto& kernel) { return kernel.supported; })->add;
+    return std::find_if(kernels.rbegin(), kernels.rend(), [](const auto& kernel) { return kernel.supported; })
+        ->add;
   }();
   best(codes, sum);
 }

@@ -10,8 +10,8 @@
 
 namespace sightline {
 
-/// Pixels per object while they are being added up: dense, so that adding is one array access, with a list of the
-/// objects touched, so that clearing and reading cost what was seen and not what exists.
+/// Pixels per object while they are being added up: dense, so that adding is one array access, with a list of
+/// the objects touched, so that clearing and reading cost what was seen and not what exists.
 class CountAccumulator {
  public:
   explicit CountAccumulator(std::uint32_t object_count) : pixels_(object_count, 0) {}
@@ -29,9 +29,10 @@ class CountAccumulator {
   std::vector<ObjectId> touched_;
 };
 
-/// Adds the histogram of an item buffer. Background is not counted; every other code must be at most the object
-/// count. Works on runs of equal codes: neighbouring pixels mostly show the same object, so what is left per pixel
-/// is one comparison with its neighbour, 16 at a time where the machine has AVX-512, 8 with AVX2.
+/// Adds the histogram of an item buffer. Background is not counted; every other code must be at most the
+/// object count. Works on runs of equal codes: neighbouring pixels mostly show the same object, so what is
+/// left per pixel is one comparison with its neighbour, 16 at a time where the machine has AVX-512, 8 with
+/// AVX2.
 void add_histogram(std::span<const ItemCode> codes, CountAccumulator& sum);
 
 /// The same by each way this build has, for tests and benchmarks. `plain` looks at one pixel at a time.

@@ -4,7 +4,8 @@
 
 namespace sightline {
 
-gl::DrawStats PixelCounter::add_blended(const View& view, std::span<const ObjectId> ids, CountAccumulator& sum) {
+gl::DrawStats PixelCounter::add_blended(const View& view, std::span<const ObjectId> ids,
+                                        CountAccumulator& sum) {
   pixels_.assign(ids.size(), 0);
   const gl::DrawStats stats = view.buffer.count_blended(view.scene, view.eye, ids, pixels_, view.rect);
   for (std::size_t i = 0; i < ids.size(); ++i) sum.add(ids[i], pixels_[i]);
@@ -27,6 +28,8 @@ class HistogramCounter final : public PixelCounter {
 
 }  // namespace
 
-std::unique_ptr<PixelCounter> make_histogram_counter() { return std::make_unique<HistogramCounter>(); }
+std::unique_ptr<PixelCounter> make_histogram_counter() {
+  return std::make_unique<HistogramCounter>();
+}
 
 }  // namespace sightline

@@ -62,7 +62,8 @@ class ItemBufferEngine final : public VisibilityEngine {
     EngineStats stats;
     std::optional<gl::PixelRect> rect;
     if (query.window) rect = gl::PixelRect{query.window->x, query.window->y, query.size};
-    gl::ItemBuffer& buffer = buffer_of(query.window ? query.window->image : query.size, query.window.has_value());
+    gl::ItemBuffer& buffer =
+        buffer_of(query.window ? query.window->image : query.size, query.window.has_value());
     for (const Eye& eye : query.eyes) count_eye(eye, buffer, rect, stats);
     Stopwatch watch;
     sum_.take(counts);

@@ -6,11 +6,12 @@
 
 namespace sightline {
 
-/// Avango's way: every object in the view frustum drawn in its own colour, then the pixels of each colour counted.
+/// Avango's way: every object in the view frustum drawn in its own colour, then the pixels of each colour
+/// counted.
 ///
-/// Exact for the pixels it samples: an object is reported when, and only when, it owns a pixel of the item buffer
-/// (opaque), or has a fragment in front of the opaque depth (blended). Between the pixels it is aggressive.
-/// Counters: histogram, queries, compute.
+/// Exact for the pixels it samples: an object is reported when, and only when, it owns a pixel of the item
+/// buffer (opaque), or has a fragment in front of the opaque depth (blended). Between the pixels it is
+/// aggressive. Counters: histogram, queries, compute.
 ///
 /// Source: Klimenko, Nikitina, Nikitin, "Parallel Visibility Test and Occlusion Culling in Avango Virtual
 /// Environment Framework". Where we differ: codes are 32-bit integers and not RGB colours, and each blended

@@ -28,8 +28,9 @@ const char* const k_blended_fragment = "#version 450 core\nvoid main() {}\n";
 
 gl::Program make_owner_program(bool alpha_test) {
   const std::string vertex = std::string(gl::k_transform_glsl) + gl::k_item_vertex_glsl_body;
-  const std::string fragment = std::string(gl::k_material_glsl) + "const bool ALPHA_TEST = " +
-                               (alpha_test ? "true" : "false") + ";" + k_owner_fragment_body;
+  const std::string fragment = std::string(gl::k_material_glsl) +
+                               "const bool ALPHA_TEST = " + (alpha_test ? "true" : "false") + ";" +
+                               k_owner_fragment_body;
   return gl::make_program("query_owner", vertex.c_str(), fragment.c_str());
 }
 
@@ -38,12 +39,14 @@ gl::Program make_blended_program() {
   return gl::make_program("query_blended", vertex.c_str(), k_blended_fragment);
 }
 
-/// One GL_SAMPLES_PASSED query an object, against the finished depth buffer. The stencil lets each pixel pass once
-/// an object, so that coincident triangles of one object do not count twice.
+/// One GL_SAMPLES_PASSED query an object, against the finished depth buffer. The stencil lets each pixel pass
+/// once an object, so that coincident triangles of one object do not count twice.
 class QueryCounter final : public PixelCounter {
  public:
   QueryCounter()
-      : solid_(make_owner_program(false)), masked_(make_owner_program(true)), blended_(make_blended_program()) {}
+      : solid_(make_owner_program(false)),
+        masked_(make_owner_program(true)),
+        blended_(make_blended_program()) {}
 
   void add_opaque(const View& view, std::span<const ObjectId> ids, CountAccumulator& sum) override {
     // Reversed depth: the surface itself is at the buffer's value, what is behind it is smaller.
@@ -58,8 +61,7 @@ class QueryCounter final : public PixelCounter {
     if (ids.empty()) return {};
     begin_pass(view, GL_GREATER);
     set_transform(blended_, view);
-    const gl::DrawStats stats =
-        query_each(view, Layer::blended, ids, {blended_.get(), blended_.get()}, sum);
+    const gl::DrawStats stats = query_each(view, Layer::blended, ids, {blended_.get(), blended_.get()}, sum);
     end_pass();
     return stats;
   }
@@ -116,6 +118,8 @@ class QueryCounter final : public PixelCounter {
 
 }  // namespace
 
-std::unique_ptr<PixelCounter> make_query_counter() { return std::make_unique<QueryCounter>(); }
+std::unique_ptr<PixelCounter> make_query_counter() {
+  return std::make_unique<QueryCounter>();
+}
 
 }  // namespace sightline

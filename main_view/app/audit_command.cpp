@@ -175,7 +175,8 @@ ExitCode run_audit(const AuditOptions& options) {
   write_report(options.json, report);
   if (!options.frames_csv.empty()) write_frames_csv(options.frames_csv, frames);
   print_summary(report["quality"], std::cout);
-  const bool short_of_it = options.max_wrong_pixels && report["quality"]["wrong_pixels_mean"] > *options.max_wrong_pixels;
+  const bool short_of_it =
+      options.max_wrong_pixels && report["quality"]["wrong_pixels_mean"] > *options.max_wrong_pixels;
   return short_of_it ? ExitCode::fell_short : ExitCode::done;
 }
 

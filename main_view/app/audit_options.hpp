@@ -14,11 +14,11 @@ struct AuditOptions {
   SceneOptions scene;
   ReplayOptions replay;
   ServiceOptions service;
-  double latency_ms = 50.0;    ///< virtual time from request to answer
-  bool still = false;          ///< keeps the camera where it is at replay.start_s
+  double latency_ms = 50.0;                ///< virtual time from request to answer
+  bool still = false;                      ///< keeps the camera where it is at replay.start_s
   std::optional<double> max_wrong_pixels;  ///< mean share of a frame's pixels above which the exit code is 1
   std::filesystem::path frames_csv;        ///< one line a frame; empty for none
-  std::filesystem::path json;  ///< report; standard output has the summary either way
+  std::filesystem::path json;              ///< report; standard output has the summary either way
 };
 
 }  // namespace sightline

@@ -79,7 +79,8 @@ void add_audit(CLI::App& app, CommandLine& line) {
   command.add_option("--latency", options.latency_ms, "Virtual milliseconds from request to answer [50]");
   command.add_option("--max-wrong-pixels", options.max_wrong_pixels,
                      "Exit with 1 when the mean share of wrong pixels is above this");
-  command.add_option("--frames-csv", options.frames_csv, "One line a frame: wrong pixels, missed, drawn, visible");
+  command.add_option("--frames-csv", options.frames_csv,
+                     "One line a frame: wrong pixels, missed, drawn, visible");
   command.add_flag("--still", options.still, "Keep the camera where it is at --start");
   command.add_option("--json", options.json, "Report file")->required();
   command.callback([&line] {

@@ -41,7 +41,7 @@ void add_service_options(CLI::App& command, ServiceOptions& options) {
   const auto add = [&](const char* name, auto& value, const char* help) {
     return command.add_option(name, value, help)->group(group);
   };
-  add("--connect", options.connect, "Endpoint of a running control_view, such as tcp://127.0.0.1:5750");
+  add("--connect", options.connect, "Endpoint of a running control_view, such as tcp://127.0.0.1:5571");
   command.add_flag("--spawn", options.spawn, "Start a control_view for the length of the run")->group(group);
   add("--keys", options.key_file, "CURVE keys of this client, TOML");
   add("--engine", options.engine, "Visibility engine; control_view engines lists them");
@@ -57,7 +57,9 @@ void add_service_options(CLI::App& command, ServiceOptions& options) {
           "Control view's image, WxH pixels")
       ->group(group);
   add("--control-rate", options.control_rate_hz, "Most requests a second that the daemon answers");
-  add("--preset", options.preset, "Named settings of the daemon, such as exact");
+  add("--preset", options.preset, "Named settings of the daemon: default or avango");
+  add("--predictor-order", options.predictor_order, "Order of the polynomial that predicts the camera [2]");
+  add("--predictor-window", options.predictor_window, "Poses that the polynomial is fitted to [20]");
   add("--guard", options.guard_deg, "Degrees by which the control view's field is widened on each side");
 }
 

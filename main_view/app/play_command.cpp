@@ -125,7 +125,8 @@ class Player {
     const double block_start_s = now_s();
     for (std::uint32_t frame = start; frame < end && !closed_; ++frame) {
       if (!options_.flat_out) wait_until(block_start_s + (frame - start) / options_.replay.rate_hz);
-      // Also while another culling plays: a session must be heard to stay open, and an answer be timed when it comes.
+      // Also while another culling plays: a session must be heard to stay open, and an answer be timed when
+      // it comes.
       if (connection_) take_answers();
       const FrameTiming timing = draw_frame(run.mode, frame, now_s());
       if (frame >= first) run.frames.push_back(timing);

@@ -1,5 +1,7 @@
 #include "main_view/app/service_connection.hpp"
 
+#include <algorithm>
+
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "common/error.hpp"
@@ -41,7 +43,12 @@ void ServiceConnection::require_open(double timeout_s) {
 
 CullingOptions culling_options_of(const ServiceOptions& options) {
   CullingOptions culling;
-  if (options.guard_deg) culling.min_guard_rad = glm::radians(*options.guard_deg);
+  if (options.predictor_order) culling.predictor_order = *options.predictor_order;
+  if (options.predictor_window) culling.predictor_window = *options.predictor_window;
+  if (options.guard_deg) {
+    culling.min_guard_rad = glm::radians(*options.guard_deg);
+    culling.max_guard_rad = std::max(culling.max_guard_rad, culling.min_guard_rad);
+  }
   return culling;
 }
 

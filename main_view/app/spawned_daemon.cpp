@@ -4,8 +4,8 @@
 #include <chrono>
 #include <cstring>
 #include <string_view>
-#include <utility>
 #include <thread>
+#include <utility>
 
 #include <fcntl.h>
 #include <poll.h>

@@ -33,7 +33,8 @@ struct CullingOptions {
   double max_position_offset_m = 0.5;  ///< eye now against eye of the request, beyond what the speed explains
 };
 
-/// Beyond a cubic an extrapolation follows the noise; each order is also one more instance of the solver to compile.
+/// Beyond a cubic an extrapolation follows the noise; each order is also one more instance of the solver to
+/// compile.
 inline constexpr int k_max_predictor_order = 3;
 inline constexpr int k_max_predictor_window = 240;
 

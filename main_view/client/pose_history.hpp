@@ -43,7 +43,8 @@ class PoseHistory {
 
   CullingOptions options_;
   std::vector<TimedPose> samples_;
-  /// Of the last two poses, even where the later one was taken for a jump: a second step like the first is motion.
+  /// Of the last two poses, even where the later one was taken for a jump: a second step like the first is
+  /// motion.
   glm::dvec3 last_velocity_m_per_s_{0.0};
   TimedPose newest_as_given_;
 };

@@ -62,7 +62,9 @@ TEST_P(HistogramKernels, CountNothingInABackgroundImage) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, HistogramKernels, testing::Range(std::size_t{0}, histogram_kernels().size()),
-                         [](const auto& kernel) { return std::string(histogram_kernels()[kernel.param].name); });
+                         [](const auto& kernel) {
+                           return std::string(histogram_kernels()[kernel.param].name);
+                         });
 
 TEST(CountAccumulator, StartsOverAfterTake) {
   CountAccumulator sum(3);
