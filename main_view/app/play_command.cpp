@@ -40,13 +40,14 @@ double now_s() {
 /// The replay of one path under several cullings.
 class Player {
  public:
-  explicit Player(const PlayOptions& options)
+  /// `path` and `scene` are read before anything is opened: bad input is the first thing a user hears of.
+  Player(const PlayOptions& options, CameraPath path, Scene scene)
       : options_(options),
-        path_(read_camera_path(options.scene.path)),
+        path_(std::move(path)),
         frame_count_(options.replay.frame_count(path_.duration_s())),
         context_(options.headless ? gl::make_offscreen_context(options.scene.context)
                                   : gl::make_window(options.scene.size, "Sightline play")),
-        scene_(load_scene(options.scene.scene)),
+        scene_(std::move(scene)),
         connection_(uses(CullingMode::service) ? std::make_unique<ServiceConnection>(
                                                      options.scene.scene, scene_.scene(), options.service)
                                                : nullptr),
@@ -120,16 +121,17 @@ class Player {
            std::find(options_.compare.begin(), options_.compare.end(), mode) != options_.compare.end();
   }
 
+  /// Frames [first, end), after a warm-up that leads up to them (before the path's start the camera waits).
   void play_block(PlayRun& run, std::uint32_t first, std::uint32_t end) {
-    const std::uint32_t start = first - std::min(first, k_warm_up_frames);
     const double block_start_s = now_s();
-    for (std::uint32_t frame = start; frame < end && !closed_; ++frame) {
-      if (!options_.flat_out) wait_until(block_start_s + (frame - start) / options_.replay.rate_hz);
+    for (std::uint32_t step = 0; step < k_warm_up_frames + end - first && !closed_; ++step) {
+      const std::uint32_t frame = std::max(first + step, k_warm_up_frames) - k_warm_up_frames;
+      if (!options_.flat_out) wait_until(block_start_s + step / options_.replay.rate_hz);
       // Also while another culling plays: a session must be heard to stay open, and an answer be timed when
       // it comes.
       if (connection_) take_answers();
       const FrameTiming timing = draw_frame(run.mode, frame, now_s());
-      if (frame >= first) run.frames.push_back(timing);
+      if (step >= k_warm_up_frames) run.frames.push_back(timing);
       show();
     }
     if (run.mode == CullingMode::service) service_.open_s += now_s() - block_start_s;
@@ -266,7 +268,7 @@ void print_summary(const nlohmann::ordered_json& report, std::ostream& out) {
 ExitCode run_play(const PlayOptions& options) {
   if (!options.json.empty()) require_writable(options.json, "--json");
   if (!options.out.empty()) require_writable(options.out / "report.json", "--out");
-  Player player(options);
+  Player player(options, read_camera_path(options.scene.path), load_scene(options.scene.scene));
   player.play();
   nlohmann::ordered_json report = player.report();
   if (!options.out.empty()) {
