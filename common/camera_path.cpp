@@ -16,6 +16,8 @@ namespace {
 constexpr std::string_view k_header = "t,px,py,pz,qw,qx,qy,qz";
 constexpr std::size_t k_columns = 8;
 constexpr double k_same_time_s = 1e-9;
+/// Eleven days. Beyond lie clocks that count from 1970 or from the start of a machine, not from the path's.
+constexpr double k_latest_s = 1e6;
 
 [[noreturn]] void refuse(const std::filesystem::path& file, std::size_t line, const std::string& why) {
   throw InputError(file.string() + ": line " + std::to_string(line) + ": " + why);
@@ -88,6 +90,9 @@ CameraPath read_camera_path(const std::filesystem::path& file) {
     trim();
     if (text.empty() && stream.peek() == std::ifstream::traits_type::eof()) break;
     const TimedPose sample = sample_of(file, line, parse_row(file, line, text));
+    if (!(sample.time_s >= 0.0 && sample.time_s <= k_latest_s)) {
+      refuse(file, line, "the time is not within 0 to 1000000 seconds; subtract the first sample's time");
+    }
     if (!path.samples.empty() && !(sample.time_s > path.samples.back().time_s)) {
       refuse(file, line, "the time does not increase");
     }

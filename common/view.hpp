@@ -51,6 +51,9 @@ struct Perspective {
 /// Conservative for a roll as well: the widened rectangle of tangents holds the turned frustum's corners.
 /// Only perspective projections widen (bottom row 0 0 -1 0); any other is returned as it is. Edges are capped
 /// at 80 degrees from the axis, beyond which one planar image no longer serves.
+///
+/// Near moves in and far out (by up to ten times, an infinite far stays), since a turned camera's near corners
+/// come closer and its far corners go further along the unturned axis.
 [[nodiscard]] glm::dmat4 widened(const glm::dmat4& clip_from_camera, double angle_rad) noexcept;
 
 /// The two eyes of a head pose: `separation_m` apart along the camera's X axis, parallel.

@@ -65,13 +65,19 @@ void main() {
 )";
 
 ItemBuffer::ItemBuffer(ImageSize size)
-    : size_(size),
-      solid_(make_program("item_buffer", vertex_source().c_str(), k_solid_fragment)),
+    : solid_(make_program("item_buffer", vertex_source().c_str(), k_solid_fragment)),
       masked_(make_program("item_buffer_mask", vertex_source().c_str(),
                            (std::string(k_material_glsl) + k_mask_fragment_body).c_str())),
       blended_count_(make_program("blended_count", vertex_source().c_str(), k_blended_count_fragment)),
       blended_mark_(make_program("blended_mark", vertex_source().c_str(), k_blended_mark_fragment)),
       blended_counts_(make_buffer()) {
+  resize(size);
+}
+
+void ItemBuffer::resize(ImageSize size) {
+  size_ = size;
+  mask_ = TextureName();
+  mask_framebuffer_ = Framebuffer();
   const auto width = static_cast<GLsizei>(size.width), height = static_cast<GLsizei>(size.height);
   codes_ = make_texture(GL_TEXTURE_2D);
   glTextureStorage2D(codes_.get(), 1, GL_R32UI, width, height);

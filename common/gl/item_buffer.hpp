@@ -30,6 +30,10 @@ class ItemBuffer {
  public:
   explicit ItemBuffer(ImageSize size);
 
+  /// Another size for the images; what they showed is gone. Cheap beside a new ItemBuffer: nothing is
+  /// compiled.
+  void resize(ImageSize size);
+
   /// Clears, then draws the opaque layer of `ids` (ascending) as seen by `eye`.
   DrawStats draw(GpuScene& scene, const Eye& eye, std::span<const ObjectId> ids,
                  const std::optional<PixelRect>& rect = {});

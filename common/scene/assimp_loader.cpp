@@ -9,6 +9,7 @@
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
+#include "common/scene/assimp_claims.hpp"
 #include "common/scene/refuse_scene.hpp"
 
 namespace sightline {
@@ -26,6 +27,8 @@ Material material_of(const aiMaterial& source) {
     material.base_color.a = opacity;
     material.alpha_mode = AlphaMode::blend;
   }
+  // The map itself is not read: what it may cut open counts as see-through, and so hides nothing.
+  if (source.GetTextureCount(aiTextureType_OPACITY) > 0) material.alpha_mode = AlphaMode::blend;
   int two_sided = 0;
   material.double_sided = source.Get(AI_MATKEY_TWOSIDED, two_sided) == aiReturn_SUCCESS && two_sided != 0;
   return material;
@@ -135,6 +138,7 @@ class Conversion {
 
 Scene load_with_assimp(const std::filesystem::path& file, const SceneLoadOptions& options) {
   const std::string name = file.string();
+  refuse_impossible_counts(file);
   Scene scene;
   {
     Assimp::Importer importer;

@@ -99,12 +99,26 @@ void check_meshes(const Scene& scene, const std::string& name) {
   }
 }
 
+/// A renderer keeps a record of each primitive of each object, and instancing multiplies the two from next to
+/// no bytes. Without instancing a primitive that draws anything has three indices, 12 bytes, of its own, so
+/// the second term lets every such scene pass; the first is what instances may add: ten million objects of a
+/// primitive or two, and about 1 GB of records at 64 bytes each.
+void check_draws(const Scene& scene, const std::string& name) {
+  constexpr std::uint64_t k_unquestioned_draws = std::uint64_t{1} << 24;
+  constexpr std::uint64_t k_least_bytes_a_primitive = 3 * sizeof(std::uint32_t);
+  std::uint64_t draws = 0;  // 2^32 objects of 2^32 primitives still fit
+  for (const Object& object : scene.objects) draws += scene.meshes[object.mesh].primitive_count;
+  if (draws > k_unquestioned_draws + scene.geometry_bytes() / k_least_bytes_a_primitive) {
+    refuse_scene(name, "its instances draw " + std::to_string(draws) +
+                           " primitives, more than its geometry justifies; join primitives or split it");
+  }
+}
+
 void check_objects(const Scene& scene, const std::string& name) {
   if (scene.objects.size() > k_max_object_count) refuse_scene(name, "has more objects than ids; split it");
   if (!scene.object_names.empty() && scene.object_names.size() != scene.objects.size()) {
     refuse_scene(name, "has not one name an object");
   }
-  bool any_triangle = false;
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     const Object& object = scene.objects[i];
     if (object.mesh >= scene.meshes.size()) {
@@ -113,7 +127,11 @@ void check_objects(const Scene& scene, const std::string& name) {
     if (!is_affine_and_finite(object.scene_from_object)) {
       refuse_scene(name, numbered("object", i) + ": its transform is not affine and finite");
     }
-    any_triangle = any_triangle || scene.triangle_count(ObjectId{static_cast<std::uint32_t>(i)}) > 0;
+  }
+  check_draws(scene, name);  // before any loop over the primitives of every object
+  bool any_triangle = false;
+  for (std::uint32_t i = 0; i < scene.object_count() && !any_triangle; ++i) {
+    any_triangle = scene.triangle_count(ObjectId{i}) > 0;
   }
   if (!any_triangle) refuse_scene(name, "no object has a triangle; there is nothing to draw");
 }

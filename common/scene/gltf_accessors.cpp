@@ -173,6 +173,10 @@ std::size_t GltfAccessors::count(int accessor, int components) const {
   return elements(accessor, components).count;
 }
 
+bool GltfAccessors::has_bytes(int accessor) const {
+  return model_.accessors[static_cast<std::size_t>(accessor)].bufferView >= 0;
+}
+
 void GltfAccessors::read_floats(int accessor, int components, float* out) const {
   const Elements source = elements(accessor, components);
   const auto width = static_cast<std::size_t>(components);
@@ -190,30 +194,41 @@ void GltfAccessors::read_floats(int accessor, int components, float* out) const 
     });
   }
 
+  const Sparse sparse = sparse_of(accessor, source);
+  with_float_reader(source.component_type, source.normalized, [&](auto read) {
+    for_each_replaced(accessor, sparse, source.count, [&](std::size_t index, const std::uint8_t* value) {
+      for (std::size_t c = 0; c < width; ++c) out[index * width + c] = read(value + c * step);
+    });
+  });
+}
+
+GltfAccessors::Sparse GltfAccessors::sparse_of(int accessor, const Elements& source) const {
   const tinygltf::Accessor& a = model_.accessors[static_cast<std::size_t>(accessor)];
-  if (!a.sparse.isSparse) return;
+  if (!a.sparse.isSparse) return {};
   const std::string what = accessor_name(accessor) + ": sparse";
   if (a.sparse.count < 0 || a.sparse.indices.byteOffset < 0 || a.sparse.values.byteOffset < 0 ||
       !is_index_type(a.sparse.indices.componentType)) {
     refuse_scene(name_, what + " count, offset or index type is impossible");
   }
   const auto count = static_cast<std::size_t>(a.sparse.count);
-  const Elements indices =
-      elements_in_view(a.sparse.indices.bufferView, static_cast<std::size_t>(a.sparse.indices.byteOffset),
-                       count, a.sparse.indices.componentType, 1, what + " indices");
-  const Elements values =
-      elements_in_view(a.sparse.values.bufferView, static_cast<std::size_t>(a.sparse.values.byteOffset),
-                       count, a.componentType, components, what + " values");
-  with_index_reader(indices.component_type, [&](auto read_index) {
-    with_float_reader(values.component_type, source.normalized, [&](auto read) {
-      for (std::size_t i = 0; i < count; ++i) {
-        const std::uint32_t index = read_index(indices.data + i * indices.stride);
-        if (index >= source.count)
-          refuse_scene(name_, what + " index " + std::to_string(index) + " is out of range");
-        for (std::size_t c = 0; c < width; ++c)
-          out[index * width + c] = read(values.data + i * values.stride + c * step);
+  return {elements_in_view(a.sparse.indices.bufferView, static_cast<std::size_t>(a.sparse.indices.byteOffset),
+                           count, a.sparse.indices.componentType, 1, what + " indices"),
+          elements_in_view(a.sparse.values.bufferView, static_cast<std::size_t>(a.sparse.values.byteOffset),
+                           count, source.component_type, source.components, what + " values")};
+}
+
+template <class Replace>
+void GltfAccessors::for_each_replaced(int accessor, const Sparse& sparse, std::size_t count,
+                                      Replace replace) const {
+  with_index_reader(sparse.indices.component_type, [&](auto read_index) {
+    for (std::size_t i = 0; i < sparse.indices.count; ++i) {
+      const std::uint32_t index = read_index(sparse.indices.data + i * sparse.indices.stride);
+      if (index >= count) {
+        refuse_scene(
+            name_, accessor_name(accessor) + ": sparse index " + std::to_string(index) + " is out of range");
       }
-    });
+      replace(index, sparse.values.data + i * sparse.values.stride);
+    }
   });
 }
 
@@ -223,21 +238,21 @@ void GltfAccessors::append_indices(int accessor, std::uint32_t base, std::size_t
   if (!is_index_type(source.component_type)) {
     refuse_scene(name_, accessor_name(accessor) + ": indices must be unsigned 8, 16 or 32-bit integers");
   }
-  const tinygltf::Accessor& a = model_.accessors[static_cast<std::size_t>(accessor)];
-  if (source.data == nullptr || a.sparse.isSparse) {
-    refuse_scene(name_, accessor_name(accessor) + ": sparse indices are not supported; export plain ones");
-  }
   const std::size_t first = out.size();
-  out.resize(first + source.count);
+  out.resize(first + source.count);  // zeros where there is no view
   std::uint32_t* const target = out.data() + first;
   std::uint32_t largest = 0;
   with_index_reader(source.component_type, [&](auto read) {
-    for (std::size_t i = 0; i < source.count; ++i) {
-      const std::uint32_t index = read(source.data + i * source.stride);
-      largest = std::max(largest, index);
-      target[i] = base + index;
+    if (source.data != nullptr) {
+      for (std::size_t i = 0; i < source.count; ++i) target[i] = read(source.data + i * source.stride);
     }
+    for_each_replaced(accessor, sparse_of(accessor, source), source.count,
+                      [&](std::size_t index, const std::uint8_t* value) { target[index] = read(value); });
   });
+  for (std::size_t i = 0; i < source.count; ++i) {
+    largest = std::max(largest, target[i]);
+    target[i] += base;
+  }
   if (source.count > 0 && largest >= vertex_count) {
     refuse_scene(name_, accessor_name(accessor) + ": index " + std::to_string(largest) +
                             " is out of range (" + std::to_string(vertex_count) + " vertices)");

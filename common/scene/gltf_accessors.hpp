@@ -22,6 +22,10 @@ class GltfAccessors {
   /// buffer.
   [[nodiscard]] std::size_t count(int accessor, int components) const;
 
+  /// Whether every element has bytes of its own: false for an accessor without a buffer view (all zeros),
+  /// also where sparse replacements give some of them bytes. `accessor` must exist.
+  [[nodiscard]] bool has_bytes(int accessor) const;
+
   /// Appends every element as floats: normalised integers as the specification scales them, other integers as
   /// they are, sparse replacements applied. `components` is 1 to 4; Vector has as many floats.
   template <class Vector>
@@ -31,7 +35,8 @@ class GltfAccessors {
     if (first < out.size()) read_floats(accessor, Vector::length(), &out[first][0]);
   }
 
-  /// Appends every element of an index accessor (8, 16 or 32 bits, unsigned), `base` added to each.
+  /// Appends every element of an index accessor (8, 16 or 32 bits, unsigned), sparse replacements applied and
+  /// `base` added to each.
   /// Refuses an index at or above `vertex_count`.
   void append_indices(int accessor, std::uint32_t base, std::size_t vertex_count,
                       std::vector<std::uint32_t>& out) const;
@@ -53,7 +58,17 @@ class GltfAccessors {
     bool normalized = false;
   };
 
+  /// Replacements of a sparse accessor; none where it is not sparse.
+  struct Sparse {
+    Elements indices;
+    Elements values;
+  };
+
   [[nodiscard]] Elements elements(int accessor, int components) const;
+  [[nodiscard]] Sparse sparse_of(int accessor, const Elements& source) const;
+  /// Calls replace(index, bytes of the value) for each; refuses an index at or above `count`.
+  template <class Replace>
+  void for_each_replaced(int accessor, const Sparse& sparse, std::size_t count, Replace replace) const;
   [[nodiscard]] Elements elements_in_view(int buffer_view, std::size_t offset, std::size_t count,
                                           int component_type, int components, const std::string& what) const;
   void read_floats(int accessor, int components, float* out) const;

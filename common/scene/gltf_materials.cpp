@@ -1,5 +1,7 @@
 #include "common/scene/gltf_materials.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <map>
 #include <tuple>
 
@@ -21,11 +23,25 @@ AlphaMode alpha_mode_of(const tinygltf::Material& material, const std::string& w
   refuse_scene(what, "alphaMode is none of OPAQUE, MASK and BLEND");
 }
 
+/// All textures of a scene together, decoded: sixteen images of 4096 x 4096. Compression hides a thousandfold
+/// growth, so that no multiple of the file's bytes would tell an honest file from a bomb.
+constexpr std::uint64_t k_most_decoded_bytes = std::uint64_t{1} << 30;
+
+constexpr const char* k_texture_transform = "KHR_texture_transform";
+
 class Textures {
  public:
   Textures(const tinygltf::Model& model, const GltfAccessors& accessors, const std::string& name,
            Scene& scene)
       : model_(model), accessors_(accessors), name_(name), scene_(scene) {}
+
+  [[nodiscard]] bool is_mirrored(int gltf_texture) const {
+    const tinygltf::Texture& texture = at(model_.textures, gltf_texture, "texture");
+    if (texture.sampler < 0) return false;
+    const tinygltf::Sampler& sampler = at(model_.samplers, texture.sampler, "sampler");
+    return sampler.wrapS == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT ||
+           sampler.wrapT == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT;
+  }
 
   /// Index in Scene::textures; the same image with the same wrapping is decoded once.
   std::uint32_t index_of(int gltf_texture) {
@@ -34,7 +50,6 @@ class Textures {
     bool repeat_u = true;
     bool repeat_v = true;
     if (texture.sampler >= 0) {
-      // A mirrored repeat is drawn as a plain one.
       const tinygltf::Sampler& sampler = at(model_.samplers, texture.sampler, "sampler");
       repeat_u = sampler.wrapS != TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
       repeat_v = sampler.wrapT != TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
@@ -43,6 +58,7 @@ class Textures {
                                                     static_cast<std::uint32_t>(scene_.textures.size()));
     if (is_new) {
       scene_.textures.push_back(decode(image, texture.source));
+      decoded_bytes_ += scene_.textures.back().rgba.size();
       scene_.textures.back().repeat_u = repeat_u;
       scene_.textures.back().repeat_v = repeat_v;
     }
@@ -60,11 +76,13 @@ class Textures {
 
   [[nodiscard]] Texture decode(const tinygltf::Image& image, int index) const {
     const std::string what = name_ + ": image " + std::to_string(index);
+    const std::uint64_t most_pixels = (k_most_decoded_bytes - decoded_bytes_) / 4;
     if (image.bufferView >= 0) {
-      return decode_image(accessors_.view(image.bufferView, "image " + std::to_string(index)), what);
+      return decode_image(accessors_.view(image.bufferView, "image " + std::to_string(index)), what,
+                          most_pixels);
     }
     if (image.image.empty()) refuse_scene(what, "its file \"" + image.uri + "\" is not beside the scene");
-    return decode_image(image.image, what);
+    return decode_image(image.image, what, most_pixels);
   }
 
   const tinygltf::Model& model_;
@@ -72,9 +90,47 @@ class Textures {
   const std::string& name_;
   Scene& scene_;
   std::map<std::tuple<int, bool, bool>, std::uint32_t> known_;
+  std::uint64_t decoded_bytes_ = 0;  // at most k_most_decoded_bytes
 };
 
 }  // namespace
+
+glm::vec2 two_numbers(const tinygltf::Value& object, const char* key, const glm::vec2& otherwise,
+                      const std::string& what) {
+  if (!object.Has(key)) return otherwise;
+  const tinygltf::Value& pair = object.Get(key);
+  if (!pair.IsArray() || pair.ArrayLen() != 2 || !pair.Get(0).IsNumber() || !pair.Get(1).IsNumber()) {
+    refuse_scene(what, std::string(k_texture_transform) + ": its " + key + " needs two numbers");
+  }
+  return {pair.Get(0).GetNumberAsDouble(), pair.Get(1).GetNumberAsDouble()};
+}
+
+/// Scales, then turns, then moves. The turn is counter-clockwise as one looks at the image, whose v runs
+/// down.
+glm::mat3x2 transform_of(const tinygltf::Value& extension, const std::string& what) {
+  const glm::vec2 offset = two_numbers(extension, "offset", glm::vec2(0.0f), what);
+  const glm::vec2 scale = two_numbers(extension, "scale", glm::vec2(1.0f), what);
+  const double turn = extension.Has("rotation") ? extension.Get("rotation").GetNumberAsDouble() : 0.0;
+  const auto cosine = static_cast<float>(std::cos(turn));
+  const auto sine = static_cast<float>(std::sin(turn));
+  return {glm::vec2(cosine, -sine) * scale.x, glm::vec2(sine, cosine) * scale.y, offset};
+}
+
+GltfTextureUse texture_use(const tinygltf::TextureInfo& info, const std::string& what,
+                           std::vector<glm::mat3x2>& transforms) {
+  GltfTextureUse use;
+  if (info.index < 0) return use;
+  use.set = info.texCoord;
+  const auto extension = info.extensions.find(k_texture_transform);
+  if (extension == info.extensions.end() || !extension->second.IsObject()) return use;
+  if (extension->second.Has("texCoord")) use.set = extension->second.Get("texCoord").GetNumberAsInt();
+  const glm::mat3x2 transform = transform_of(extension->second, what);
+  if (transform == glm::mat3x2(1.0f)) return use;
+  const auto known = std::find(transforms.begin(), transforms.end(), transform);
+  use.transform = static_cast<int>(known - transforms.begin());
+  if (known == transforms.end()) transforms.push_back(transform);
+  return use;
+}
 
 GltfTextureSets add_gltf_materials(const tinygltf::Model& model, const GltfAccessors& accessors,
                                    const SceneLoadOptions& options, const std::string& name, Scene& scene) {
@@ -93,10 +149,14 @@ GltfTextureSets add_gltf_materials(const tinygltf::Model& model, const GltfAcces
     material.alpha_cutoff = static_cast<float>(source.alphaCutoff);
     material.double_sided = source.doubleSided;
     const bool textured = pbr.baseColorTexture.index >= 0;
+    if (textured && material.alpha_mode == AlphaMode::mask &&
+        textures.is_mirrored(pbr.baseColorTexture.index)) {
+      refuse_scene(what, "MASK with a mirrored texture is not supported; repeat or clamp it");
+    }
     if (textured && (options.shading || material.alpha_mode == AlphaMode::mask)) {
       material.texture = textures.index_of(pbr.baseColorTexture.index);
     }
-    sets.set_of_material.push_back(textured ? pbr.baseColorTexture.texCoord : -1);
+    sets.of_material.push_back(texture_use(pbr.baseColorTexture, what, sets.transforms));
     scene.materials.push_back(material);
   }
   return sets;

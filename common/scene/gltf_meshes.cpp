@@ -15,11 +15,12 @@ namespace {
 /// accessors that overlap could otherwise multiply a small buffer without end.
 constexpr std::uint64_t k_unquestioned_elements = std::uint64_t{1} << 24;
 
-/// Vertices are the same where all three accessors are.
+/// Vertices are the same where all three accessors are, and what is done to the texture coordinates.
 struct VertexSource {
   int position = -1;
   int normal = -1;
   int uv = -1;
+  int transform = -1;  // of the texture coordinates, in GltfTextureSets
 
   auto operator<=>(const VertexSource&) const = default;
 };
@@ -77,6 +78,7 @@ class MeshAppender {
       const std::uint64_t corners = primitive.indices < 0 ? count : accessors_.count(primitive.indices, 1);
       index_count_ += primitive.mode == TINYGLTF_MODE_TRIANGLES ? corners : 3 * corners;
       check_justified();
+      check_vertex_alpha(primitive, source);
       has_normals_ = has_normals_ || source.normal >= 0;
       has_uvs_ = has_uvs_ || uv_wanted(primitive, source);
     }
@@ -93,6 +95,7 @@ class MeshAppender {
       read_attribute<glm::vec2>("TEXCOORD", scene_.uvs, [this](const VertexSource& s) {
         return options_.shading || masked_uvs_.contains(s) ? s.uv : -1;
       });
+      transform_uvs();
     }
   }
 
@@ -141,13 +144,44 @@ class MeshAppender {
   [[nodiscard]] VertexSource source_of(const tinygltf::Primitive& primitive) const {
     const int position = attribute(primitive, "POSITION");
     if (position < 0) refuse_scene(name_, "a triangle primitive has no POSITION");
-    int set = 0;
-    if (primitive.material >= 0 &&
-        static_cast<std::size_t>(primitive.material) < sets_.set_of_material.size()) {
-      set = std::max(0, sets_.set_of_material[static_cast<std::size_t>(primitive.material)]);
+    GltfTextureUse use;
+    if (primitive.material >= 0 && static_cast<std::size_t>(primitive.material) < sets_.of_material.size()) {
+      use = sets_.of_material[static_cast<std::size_t>(primitive.material)];
     }
-    return {position, attribute(primitive, "NORMAL"),
-            attribute(primitive, "TEXCOORD_" + std::to_string(set))};
+    const int uv = attribute(primitive, "TEXCOORD_" + std::to_string(std::max(0, use.set)));
+    return {position, attribute(primitive, "NORMAL"), uv, uv < 0 ? -1 : use.transform};
+  }
+
+  void transform_uvs() {
+    for (const VertexSource& source : sources_) {
+      if (source.transform < 0) continue;
+      const glm::mat3x2& transform = sets_.transforms[static_cast<std::size_t>(source.transform)];
+      const VertexRange range = ranges_.at(source);
+      for (std::size_t i = range.first; i < std::size_t{range.first} + range.count; ++i) {
+        scene_.uvs[i] = transform * glm::vec3(scene_.uvs[i], 1.0f);
+      }
+    }
+  }
+
+  /// A vertex colour's alpha counts in the alpha test, which knows only the material's and the texture's.
+  void check_vertex_alpha(const tinygltf::Primitive& primitive, const VertexSource& source) {
+    const int color = attribute(primitive, "COLOR_0");
+    if (scene_.materials[material_of(primitive)].alpha_mode != AlphaMode::mask || color < 0 ||
+        static_cast<std::size_t>(color) >= model_.accessors.size() ||
+        model_.accessors[static_cast<std::size_t>(color)].type != TINYGLTF_TYPE_VEC4 ||
+        !checked_colors_.insert(color).second) {
+      return;
+    }
+    if (accessors_.count(color, 4) != accessors_.count(source.position, 3)) {
+      refuse_scene(name_, "COLOR_0 accessor " + std::to_string(color) + ": has not one element a vertex");
+    }
+    std::vector<glm::vec4> colors;
+    accessors_.append_floats(color, colors);
+    if (std::any_of(colors.begin(), colors.end(), [](const glm::vec4& c) { return !(c.a >= 1.0f); })) {
+      refuse_scene(name_, "COLOR_0 accessor " + std::to_string(color) +
+                              ": an alpha below 1 with a MASK material is not supported; move it into the "
+                              "texture");
+    }
   }
 
   [[nodiscard]] bool uv_wanted(const tinygltf::Primitive& primitive, const VertexSource& source) {
@@ -197,6 +231,7 @@ class MeshAppender {
   Scene& scene_;
   std::map<VertexSource, VertexRange> ranges_;
   std::set<VertexSource> masked_uvs_;
+  std::set<int> checked_colors_;
   std::vector<VertexSource> sources_;
   std::uint64_t vertex_count_ = 0;
   std::uint64_t index_count_ = 0;

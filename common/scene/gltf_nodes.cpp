@@ -141,7 +141,11 @@ class Walk {
     for (const char* key : {"TRANSLATION", "ROTATION", "SCALE"}) {
       if (!attributes.Has(key)) continue;
       const int components = key[0] == 'R' ? 4 : 3;
-      const std::size_t n = accessors_.count(attributes.Get(key).GetNumberAsInt(), components);
+      const int accessor = attributes.Get(key).GetNumberAsInt();
+      const std::size_t n = accessors_.count(accessor, components);
+      if (!accessors_.has_bytes(accessor)) {
+        refuse(node_index, std::string(k_instancing) + ": its " + key + " has no buffer view");
+      }
       if (counted && n != count) refuse(node_index, "its instance attributes differ in count");
       count = n;
       counted = true;

@@ -1,9 +1,11 @@
 #include "common/scene/hash_scene.hpp"
 
+#include <algorithm>
 #include <cstring>
 #include <memory>
 #include <new>
 #include <span>
+#include <vector>
 
 #include <xxhash.h>
 
@@ -72,6 +74,19 @@ void add_primitive(Hasher& hasher, const Scene& scene, const Primitive& primitiv
   }
 }
 
+constexpr std::uint32_t k_unused = 0xffffffffu;
+
+/// Place of each mesh among those that objects use.
+std::vector<std::uint32_t> number_used_meshes(const Scene& scene) {
+  std::vector<std::uint32_t> number(scene.meshes.size(), k_unused);
+  for (const Object& object : scene.objects) number[object.mesh] = 0;
+  std::uint32_t next = 0;
+  for (std::uint32_t& place : number) {
+    if (place != k_unused) place = next++;
+  }
+  return number;
+}
+
 }  // namespace
 
 SceneDigest hash_scene(const Scene& scene) {
@@ -80,8 +95,13 @@ SceneDigest hash_scene(const Scene& scene) {
   hasher.add(std::span<const glm::vec3>(scene.positions));
   hasher.add(static_cast<std::uint64_t>(scene.materials.size()));
   for (const Material& material : scene.materials) add_material(hasher, scene, material);
-  hasher.add(static_cast<std::uint64_t>(scene.meshes.size()));
-  for (const Mesh& mesh : scene.meshes) {
+  // A mesh that no object uses hides nothing, and a loader does not read it: the used ones count, from 0.
+  const std::vector<std::uint32_t> number = number_used_meshes(scene);
+  hasher.add(static_cast<std::uint64_t>(
+      std::count_if(number.begin(), number.end(), [](std::uint32_t mesh) { return mesh != k_unused; })));
+  for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
+    if (number[m] == k_unused) continue;
+    const Mesh& mesh = scene.meshes[m];
     hasher.add(mesh.primitive_count);
     for (std::uint32_t i = 0; i < mesh.primitive_count; ++i) {
       add_primitive(hasher, scene, scene.primitives[mesh.first_primitive + i]);
@@ -89,7 +109,7 @@ SceneDigest hash_scene(const Scene& scene) {
   }
   hasher.add(static_cast<std::uint64_t>(scene.objects.size()));
   for (const Object& object : scene.objects) {
-    hasher.add(object.mesh);
+    hasher.add(number[object.mesh]);
     hasher.add(object.scene_from_object);
   }
   hasher.add(scene.world_origin_m);

@@ -27,7 +27,8 @@ constexpr std::uint64_t k_unquestioned_pixels = 1u << 22;
 
 }  // namespace
 
-Texture decode_image(std::span<const std::uint8_t> bytes, const std::string& what) {
+Texture decode_image(std::span<const std::uint8_t> bytes, const std::string& what,
+                     std::uint64_t most_pixels) {
   int width = 0;
   int height = 0;
   int channels = 0;
@@ -40,6 +41,10 @@ Texture decode_image(std::span<const std::uint8_t> bytes, const std::string& wha
   if (pixels > k_unquestioned_pixels && pixels > bytes.size() * k_most_pixels_a_byte) {
     refuse_scene(what, "claims " + std::to_string(width) + " x " + std::to_string(height) + " pixels in " +
                            std::to_string(bytes.size()) + " bytes");
+  }
+  if (pixels > most_pixels) {
+    refuse_scene(what, "its " + std::to_string(width) + " x " + std::to_string(height) +
+                           " pixels bring the textures above 1 GiB; make them smaller");
   }
   const std::unique_ptr<stbi_uc, void (*)(void*)> decoded(
       stbi_load_from_memory(bytes.data(), size, &width, &height, &channels, 4), &stbi_image_free);

@@ -73,6 +73,57 @@ TEST(AssimpLoader, KeepsColladasNodesAndTheirSharedMesh) {
   EXPECT_EQ(glm::dvec3(scene.objects[1].scene_from_object[3]), glm::dvec3(5, 7, 0));
 }
 
+TEST(AssimpLoader, TakesAnOpacityMapForSeeThrough) {
+  const testing::TemporaryFolder folder;
+  testing::write_text(folder / "a.mtl", "newmtl leaf\nKd 0 1 0\nmap_d leaf.png\n");
+  testing::write_text(folder / "a.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nusemtl leaf\nf 1 2 3\n");
+  const Scene scene = load_scene(folder / "a.obj");
+  EXPECT_EQ(scene.materials[scene.primitives[0].material].alpha_mode, AlphaMode::blend);
+}
+
+TEST(AssimpLoader, ReadsAsciiFbx) {
+  const Scene scene = load_text("a.fbx", R"(; FBX 7.3.0 project file
+FBXHeaderExtension:  {
+	FBXHeaderVersion: 1003
+	FBXVersion: 7300
+}
+GlobalSettings:  {
+	Version: 1000
+	Properties70:  {
+		P: "UnitScaleFactor", "double", "Number", "",1
+	}
+}
+Definitions:  {
+	Version: 100
+}
+Objects:  {
+	Geometry: 100, "Geometry::g", "Mesh" {
+		Vertices: *9 {
+			a: 0,0,0,1,0,0,0,2,0
+		}
+		PolygonVertexIndex: *3 {
+			a: 0,1,-3
+		}
+		GeometryVersion: 124
+	}
+	Model: 200, "Model::m", "Mesh" {
+		Version: 232
+		Properties70:  {
+			P: "Lcl Translation", "Lcl Translation", "", "A",5,0,0
+		}
+	}
+}
+Connections:  {
+	C: "OO",200,0
+	C: "OO",100,200
+}
+)");
+  ASSERT_EQ(scene.object_count(), 1u);
+  EXPECT_EQ(scene.triangle_count(), 1u);
+  EXPECT_NEAR(scene.bounds.extent().y, 2.0f, 1e-3f);
+  EXPECT_NEAR(scene.bounds.min.x, 5.0f, 1e-3f);
+}
+
 TEST(AssimpLoader, RefusesPointsAloneAndNumbersThatAreNone) {
   EXPECT_THROW((void)load_text("a.obj", "v 0 0 0\nv 1 0 0\nl 1 2\n"), InputError);
   EXPECT_THROW((void)load_text("a.obj", "v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"), InputError);

@@ -80,11 +80,27 @@ TEST(CameraPath, NamesTheLineItRefuses) {
   EXPECT_THAT(refusal_of(header + "0,inf,2,3,1,0,0,0\n"), HasSubstr("line 2: column 2"));
   EXPECT_THAT(refusal_of(header + "0,1,2,3,0,0,0,0\n"), HasSubstr("quaternion"));
   EXPECT_THAT(refusal_of(header + "0,1,2,3,1,0,0,0\n0,1,2,3,1,0,0,0\n"), HasSubstr("line 3: the time"));
+  EXPECT_THAT(refusal_of(header + "-0.1,1,2,3,1,0,0,0\n"), HasSubstr("line 2: the time"));
+  EXPECT_THAT(refusal_of(header + "1700000000,1,2,3,1,0,0,0\n"), HasSubstr("subtract the first"));
+  EXPECT_THAT(refusal_of(header + "0,1,2,3,1,0,0,0\n1000001,1,2,3,1,0,0,0\n"), HasSubstr("line 3: the time"));
+  EXPECT_EQ(refusal_of(header + "0,1,2,3,1,0,0,0\n1e6,1,2,3,1,0,0,0\n"), "accepted");
   EXPECT_THAT(refusal_of(header + "0,1,2,3,1,0,0,0\n\n1,1,2,3,1,0,0,0\n"), HasSubstr("line 3"));
   EXPECT_THAT(refusal_of(""), HasSubstr("path.csv"));
   EXPECT_THROW((void)read_camera_path("/nonexistent/path.csv"), InputError);
   EXPECT_THROW((void)read_camera_path("/"), InputError);
   EXPECT_THROW(write_camera_path("/nonexistent/path.csv", {}), InputError);
+}
+
+TEST(CameraPath, ReadsEverySharedPathAndTrace) {
+  const auto shared = testing::shared_folder();
+  if (!shared) GTEST_SKIP() << "../shared is absent";
+  for (const char* folder : {"scenes", "traces"}) {
+    for (const auto& entry : std::filesystem::directory_iterator(*shared / folder)) {
+      if (entry.path().extension() == ".csv") {
+        EXPECT_NO_THROW((void)read_camera_path(entry.path())) << entry.path();
+      }
+    }
+  }
 }
 
 TEST(CameraPath, ReadsTheBundledWalk) {

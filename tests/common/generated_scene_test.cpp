@@ -82,6 +82,17 @@ TEST(WriteGlb, ReadsBackToAnEqualScene) {
   }
 }
 
+TEST(WriteGlb, ReadsBackScenesThatLeaveMeshesUnused) {
+  const testing::TemporaryFolder folder;
+  for (const std::uint32_t count : {1u, 2u, 10u, 50u, 100u}) {
+    for (const Scene& scene : {generate_city(count, 5), generate_crowd(count, 5)}) {
+      write_glb(folder / "scene.glb", scene);
+      EXPECT_EQ(load_scene(folder / "scene.glb").digest, scene.digest) << count;
+      EXPECT_EQ(load_scene(folder / "scene.glb", {.shading = false}).digest, scene.digest) << count;
+    }
+  }
+}
+
 TEST(WriteGlb, KeepsMaterialsTexturesNamesAndADistantOrigin) {
   testing::SceneBuilder builder;
   const auto mask = builder.add_checker_mask();

@@ -178,6 +178,18 @@ TEST(GltfLoader, ReadsInterleavedNormalisedAndSparseAccessors) {
   EXPECT_EQ(corners_of(load(sparse)), (std::vector<glm::vec3>{{0, 0, 0}, {0, 0, 0}, {5, 6, 7}}));
 }
 
+TEST(GltfLoader, ReadsSparseIndices) {
+  GlbFile file = testing::triangle_file();
+  Json& indices = file.json["accessors"][1];
+  indices["sparse"] = {
+      {"count", 2},
+      {"indices", {{"bufferView", file.add_view(std::vector<std::uint8_t>{0, 2})}, {"componentType", 5121}}},
+      {"values", {{"bufferView", file.add_view(std::vector<std::uint16_t>{2, 0})}}}};
+  EXPECT_EQ(corners_of(load(file)), (std::vector<glm::vec3>{{0, 1, 0}, {1, 0, 0}, {0, 0, 0}}));
+  indices["sparse"]["values"]["bufferView"] = file.add_view(std::vector<std::uint16_t>{2, 3});
+  EXPECT_THROW((void)load(file), InputError);
+}
+
 TEST(GltfLoader, MakesEachInstanceAnObject) {
   GlbFile file = testing::triangle_file();
   const int moves = file.add_positions({0, 0, 0, 10, 0, 0, 0, 20, 0});
@@ -233,6 +245,26 @@ TEST(GltfLoader, KeepsWhatOnlyShadingNeedsOnlyForShading) {
   EXPECT_FLOAT_EQ(masked.materials[0].alpha_cutoff, 0.25f);
   EXPECT_EQ(masked.digest, load(textured_file("MASK")).digest);
   EXPECT_NE(masked.digest, bare.digest);
+}
+
+TEST(GltfLoader, AppliesTheTextureTransformToTheCoordinates) {
+  GlbFile file = textured_file("MASK");
+  Json& info = file.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"];
+  info["texCoord"] = 0;
+  // The specification's example: the lower left quadrant, turned by a right angle.
+  info["extensions"]["KHR_texture_transform"] = {
+      {"offset", {0, 1}}, {"rotation", std::acos(0.0)}, {"scale", {0.5, 0.5}}, {"texCoord", 1}};
+  for (const bool shading : {true, false}) {
+    const Scene scene = load(file, {.shading = shading});
+    ASSERT_EQ(scene.uvs.size(), 3u);
+    EXPECT_LT(glm::distance(scene.uvs[0], glm::vec2(0, 1)), 1e-6f);
+    EXPECT_LT(glm::distance(scene.uvs[1], glm::vec2(0, 0.5)), 1e-6f);
+    EXPECT_LT(glm::distance(scene.uvs[2], glm::vec2(0.5, 1)), 1e-6f);
+    EXPECT_EQ(scene.digest, load(file).digest);
+  }
+  EXPECT_NE(load(file).digest, load(textured_file("MASK")).digest);
+  info["extensions"]["KHR_texture_transform"]["scale"] = {1};
+  EXPECT_THROW((void)load(file), InputError);
 }
 
 TEST(GltfLoader, ReadsBuffersBesideTheFileAndInside) {

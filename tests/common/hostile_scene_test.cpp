@@ -253,6 +253,68 @@ TEST(HostileScene, ImagesThatCannotBeDecodedAreRefused) {
   EXPECT_THAT(refusal_of(missing), HasSubstr("missing.png"));
 }
 
+TEST(HostileScene, TexturesAboveAGibibyteAreRefused) {
+  Texture texture;
+  texture.width = texture.height = 16;
+  texture.rgba.assign(16 * 16 * 4, 100);
+  const std::vector<std::uint8_t> png = encode_png(texture);
+  EXPECT_EQ(decode_image(png, "image", 256).rgba.size(), texture.rgba.size());
+  EXPECT_THROW((void)decode_image(png, "image", 255), InputError);
+}
+
+TEST(HostileScene, InstancesThatMultiplyPrimitivesAreRefused) {
+  GlbFile file = testing::triangle_file();
+  Json& primitives = file.json["meshes"][0]["primitives"];
+  for (int i = 1; i < 1000; ++i) primitives.push_back(primitives[0]);
+  const int moves = file.add_positions(std::vector<float>(3 * 20000, 1.0f));
+  file.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {{"TRANSLATION", moves}};
+  EXPECT_THAT(refusal_of(file), HasSubstr("20000000 primitives"));
+  primitives = Json::array({Json(primitives[0])});
+  EXPECT_EQ(refusal_of(file), "accepted");
+  file.json["accessors"][static_cast<std::size_t>(moves)].erase("bufferView");
+  EXPECT_THAT(refusal_of(file), HasSubstr("TRANSLATION has no buffer view"));
+}
+
+TEST(HostileScene, VertexAlphaAndMirrorsThatAnAlphaTestNeedsAreRefused) {
+  Texture texture;
+  texture.width = texture.height = 1;
+  texture.rgba.assign(4, 100);
+  GlbFile file = file_with_image(encode_png(texture));
+  file.json["materials"][0]["alphaMode"] = "MASK";
+  file.json["meshes"][0]["primitives"][0]["material"] = 0;
+  GlbFile mirrored = file;
+  mirrored.json["textures"][0]["sampler"] = mirrored.append("samplers", {{"wrapT", 33648}});
+  EXPECT_THAT(refusal_of(mirrored), HasSubstr("mirrored"));
+  mirrored.json["materials"][0]["alphaMode"] = "OPAQUE";
+  EXPECT_EQ(refusal_of(mirrored), "accepted");
+  for (const float alpha : {1.0f, 0.5f}) {
+    GlbFile colored = file;
+    const std::vector<float> colors{1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, alpha};
+    colored.json["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] =
+        colored.add_accessor(colored.add_view(colors), 5126, 3, "VEC4");
+    EXPECT_EQ(refusal_of(colored) == "accepted", alpha == 1.0f);
+  }
+}
+
+TEST(HostileScene, PlyAndStlCountsBeyondTheFileAreRefusedBeforeAssimpAllocates) {
+  const auto ply = [](const std::string& format, const std::string& elements) {
+    return refusal_of("ply\nformat " + format + " 1.0\n" + elements + "end_header\n0 0 0\n", "a.ply");
+  };
+  const std::string xyz = "property float x\nproperty float y\nproperty float z\n";
+  for (const char* format : {"ascii", "binary_little_endian", "binary_big_endian"}) {
+    EXPECT_THAT(ply(format, "element vertex 200000000\n" + xyz), HasSubstr("claims 200000000"));
+    EXPECT_THAT(ply(format, "element vertex 99999999999999999999\n" + xyz), HasSubstr("no count"));
+    EXPECT_THAT(ply(format, "element vertex 1\n" + xyz + "element face 4000000000\n"), HasSubstr("face"));
+  }
+  EXPECT_THAT(refusal_of("ply\n" + std::string(100000, 'x'), "a.ply"), HasSubstr("does not end"));
+  std::string stl(84 + 50, '\0');
+  stl[80] = 2;
+  EXPECT_THAT(refusal_of(stl, "a.stl"), HasSubstr("claims 2 triangles"));
+  stl[80] = 1;
+  stl[83] = '\x80';  // 50 * 2^31 wraps to nothing at 32 bits
+  EXPECT_THAT(refusal_of(stl, "a.stl"), HasSubstr("claims 2147483649 triangles"));
+}
+
 TEST(HostileScene, EveryTruncationIsRefusedAndNoFlippedBitCrashes) {
   const std::string good = testing::triangle_file().glb();
   for (std::size_t length = 0; length < good.size(); length += length < 64 ? 1 : 7) {
