@@ -4,6 +4,8 @@
 #include <iterator>
 #include <utility>
 
+#include <glm/geometric.hpp>
+
 namespace sightline {
 namespace {
 
@@ -22,18 +24,39 @@ void keep_newest(std::vector<ObjectMove>& moves) {
   moves.resize(kept);
 }
 
-bool says_nothing_new(const SceneEdits& edits, const ObjectMove& move) {
+/// Null for an object that was not moved before.
+const ObjectMove* last_move_of(const SceneEdits& edits, const ObjectMove& move) {
   const auto known = std::lower_bound(edits.moves.begin(), edits.moves.end(), move, id_less);
-  return known != edits.moves.end() && known->id == move.id &&
-         known->world_from_object == move.world_from_object;
+  return known != edits.moves.end() && known->id == move.id ? &*known : nullptr;
+}
+
+bool says_nothing_new(const SceneEdits& edits, const ObjectMove& move) {
+  const ObjectMove* const last = last_move_of(edits, move);
+  return last != nullptr && last->world_from_object == move.world_from_object;
+}
+
+/// As the clients tell jumps of their camera: 0.5 m, or 20 degrees (entries of the linear part).
+constexpr double k_jump_distance_m = 0.5;
+constexpr double k_jump_turn = 0.35;
+
+bool is_jump(const SceneEdits& edits, const ObjectMove& move) {
+  const ObjectMove* const last = last_move_of(edits, move);
+  if (last == nullptr) return true;
+  const glm::dmat4x3 change = move.world_from_object - last->world_from_object;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (glm::length(change[axis]) > k_jump_turn) return true;
+  }
+  return glm::length(change[3]) > k_jump_distance_m;
 }
 
 }  // namespace
 
-void apply_moves(SceneEdits& edits, std::vector<ObjectMove> moves) {
+bool apply_moves(SceneEdits& edits, std::vector<ObjectMove> moves) {
   keep_newest(moves);
   std::erase_if(moves, [&](const ObjectMove& move) { return says_nothing_new(edits, move); });
-  if (moves.empty()) return;
+  if (moves.empty()) return false;
+  const bool jumped =
+      std::any_of(moves.begin(), moves.end(), [&](const ObjectMove& move) { return is_jump(edits, move); });
 
   std::vector<ObjectMove> merged;
   merged.reserve(edits.moves.size() + moves.size());
@@ -42,6 +65,7 @@ void apply_moves(SceneEdits& edits, std::vector<ObjectMove> moves) {
                  std::back_inserter(merged), id_less);
   edits.moves = std::move(merged);
   ++edits.version;
+  return jumped;
 }
 
 }  // namespace sightline

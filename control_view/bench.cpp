@@ -48,10 +48,19 @@ std::vector<EngineOptions> chosen_engines(const BenchOptions& options) {
   return chosen;
 }
 
+/// More than four hours at 60 views a second.
+constexpr std::uint32_t k_max_frames = 1'000'000;
+
 std::uint32_t frame_count(const CameraPath& path, const BenchOptions& options) {
+  if (path.samples.front().time_s < 0.0) throw InputError(options.path + ": its times must not be below 0");
   // The small addition keeps a duration that is a whole number of frames from losing the last to rounding.
-  const auto on_path = static_cast<std::uint32_t>(std::floor(path.duration_s() * options.rate_hz + 1e-6)) + 1;
-  return options.frames == 0 ? on_path : std::min(options.frames, on_path);
+  const double on_path = std::floor(path.duration_s() * options.rate_hz + 1e-6) + 1.0;
+  const double wanted = options.frames == 0 ? on_path : std::min<double>(options.frames, on_path);
+  if (wanted > k_max_frames) {
+    throw InputError(options.path + ": more than " + std::to_string(k_max_frames) +
+                     " views; give fewer with --frames or a lower --rate");
+  }
+  return static_cast<std::uint32_t>(wanted);
 }
 
 void show_progress(std::uint32_t frame, std::uint32_t frames) {
@@ -83,7 +92,8 @@ void look_at_every_view(const CameraPath& path, std::uint32_t frames, const Benc
 void bench(const BenchOptions& options) {
   const std::vector<EngineOptions> chosen = chosen_engines(options);
   const CameraPath path = read_camera_path(options.path);
-  write_file(options.json, "{}\n");  // now, rather than after minutes, if it cannot be
+  const std::uint32_t frames = frame_count(path, options);
+  require_writable(options.json);  // now, rather than after minutes, if it is not
 
   std::vector<Contestant> contestants;
   std::unique_ptr<EngineThread> reference;
@@ -99,7 +109,6 @@ void bench(const BenchOptions& options) {
         std::make_unique<EngineThread>(scene, EngineOptions{"item_buffer", "histogram", options.context});
   }
 
-  const std::uint32_t frames = frame_count(path, options);
   look_at_every_view(path, frames, options, *reference, contestants);
 
   nlohmann::json report{{"command_line", options.command_line},

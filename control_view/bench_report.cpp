@@ -1,12 +1,11 @@
 #include "control_view/bench_report.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <fstream>
-#include <numeric>
 #include <thread>
 
 #include <nlohmann/json.hpp>
+
+#include "common/statistics.hpp"
 
 namespace sightline {
 namespace {
@@ -20,13 +19,6 @@ std::uint64_t count_missing(const std::vector<ObjectId>& wanted, const std::vect
     if (candidate == held.end() || *candidate != id) ++missing;
   }
   return missing;
-}
-
-/// The smallest value that `share` of all do not exceed (nearest rank). Sorts.
-double percentile(std::vector<double>& values, double share) {
-  std::sort(values.begin(), values.end());
-  const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size())));
-  return values[std::max<std::size_t>(rank, 1) - 1];
 }
 
 }  // namespace
@@ -52,9 +44,9 @@ nlohmann::json to_json(const EngineTally& tally) {
   return {{"engine", tally.options.engine},
           {"counter", tally.options.counter},
           {"frame_ms",
-           {{"mean", per_frame(std::accumulate(frame_ms.begin(), frame_ms.end(), 0.0))},
-            {"p50", percentile(frame_ms, 0.5)},
-            {"p99", percentile(frame_ms, 0.99)}}},
+           {{"mean", mean_of(frame_ms)},
+            {"p50", quantile_of(frame_ms, 0.5)},
+            {"p99", quantile_of(frame_ms, 0.99)}}},
           {"stages_ms",
            {{"cull", per_frame(tally.sums.cull_s * 1e3)},
             {"draw", per_frame(tally.sums.draw_s * 1e3)},

@@ -113,6 +113,7 @@ DaemonOptions preset_options(std::string_view name) {
   DaemonOptions options;
   if (name == "default") return options;
   if (name == "avango") {
+    options.preset = name;
     options.refine = false;
     return options;
   }

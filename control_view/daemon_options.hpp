@@ -14,6 +14,7 @@ namespace sightline {
 struct DaemonOptions {
   std::string bind = "tcp://127.0.0.1:5571";
   std::string scene;
+  std::string preset = "default";  ///< what the settings began as, for reports
   ImageSize size{512, 384};
   EngineOptions engine;
   std::uint32_t filter = 8;  ///< answers the low-pass filter averages

@@ -41,7 +41,9 @@ LinkOptions link_options(const DaemonOptions& options) {
 ServiceOptions service_options(const DaemonOptions& options) {
   ServiceOptions service;
   service.pipeline = {options.size, options.filter, options.threshold, options.refine};
-  service.engine_name = options.engine.engine + "/" + options.engine.counter;
+  service.engine_name = options.engine.engine;
+  service.counter_name = options.engine.counter;
+  service.preset_name = options.preset;
   service.max_sessions = options.max_sessions;
   service.silence_limit_s = options.silence_limit_s;
   service.answer_rate_hz = options.control_rate_hz;
@@ -125,9 +127,10 @@ void serve(const DaemonOptions& options) {
     throw InputError("no scene given: use --scene FILE or `scene` in the config file");
   (void)find_engine(options.engine);
 
-  const LinkOptions settings = link_options(options);
+  LinkOptions settings = link_options(options);
 
   Served served = make_served(options);
+  settings.max_frame_bytes = largest_frame_of_a_client(served.scene.object_count);
   // Bound only now: whoever can connect is answered at once, and until now a signal had nothing to clean up.
   stop.defer();
   SocketFile socket_file;

@@ -9,16 +9,30 @@
 #include <spdlog/spdlog.h>
 
 #include "common/error.hpp"
-#include "protocol/codec.hpp"
 
 namespace sightline {
 namespace {
 
-/// Frames read in one step at most, so that a peer that floods the link cannot keep the others from their
-/// answers.
+/// What one step reads at most, so that a peer that floods the link cannot keep the others from their
+/// answers. The link hands out the peers' frames in turn, so nobody waits behind another's queue either.
 constexpr int k_frames_a_step = 256;
+constexpr std::size_t k_bytes_a_step = 1u << 20;
+constexpr double k_reading_a_step_s = 0.005;
+
+/// While a flood leaves frames unread, a silent session may have a word among them: it then gets this many
+/// times the silence limit.
+constexpr double k_patience_in_a_flood = 10.0;
+
+/// Room for everything but a request's moves: above eight eyes and all texts.
+constexpr std::size_t k_frame_without_moves_bytes = 64u << 10;
+/// A move on the wire.
+constexpr std::size_t k_move_bytes = 104;
 
 }  // namespace
+
+std::size_t largest_frame_of_a_client(std::uint32_t object_count) noexcept {
+  return std::min(k_frame_without_moves_bytes + k_move_bytes * object_count, DecodeLimits{}.max_frame_bytes);
+}
 
 Service::Service(ServerLink& link, VisibilityEngine& engine, SceneIdentity scene, ServiceOptions options,
                  Clock clock)
@@ -27,22 +41,30 @@ Service::Service(ServerLink& link, VisibilityEngine& engine, SceneIdentity scene
       scene_(scene),
       options_(std::move(options)),
       clock_(std::move(clock)),
-      sessions_(options_.max_sessions) {}
+      sessions_(options_.max_sessions) {
+  limits_.max_frame_bytes = largest_frame_of_a_client(scene_.object_count);
+  limits_.max_moves = std::min<std::size_t>(limits_.max_moves, scene_.object_count);
+}
 
 void Service::step(std::chrono::milliseconds timeout) {
-  drain(timeout);
-  counters_.reaped += sessions_.close_silent(clock_() - options_.silence_limit_s);
+  const bool all_read = drain(timeout);
+  const double patience = all_read ? 1.0 : k_patience_in_a_flood;
+  counters_.reaped += sessions_.close_silent(clock_() - patience * options_.silence_limit_s);
   if (!may_answer_now()) return;
   if (Session* session = sessions_.next_pending()) answer(*session);
 }
 
-void Service::drain(std::chrono::milliseconds timeout) {
+bool Service::drain(std::chrono::milliseconds timeout) {
   auto incoming = link_.receive(wait_time(timeout));
-  for (int frame = 0; incoming; ++frame) {
+  const double end_s = clock_() + k_reading_a_step_s;
+  std::size_t bytes = 0;
+  for (int frames = 1; incoming; ++frames) {
+    bytes += incoming->frame.size();
     receive(*incoming);
-    if (frame + 1 == k_frames_a_step) return;
+    if (frames == k_frames_a_step || bytes >= k_bytes_a_step || clock_() >= end_s) return false;
     incoming = link_.receive(std::chrono::milliseconds{0});
   }
+  return true;
 }
 
 void Service::answer(Session& session) {
@@ -89,12 +111,20 @@ void Service::shut_down() {
 }
 
 void Service::receive(const ServerLink::Incoming& incoming) {
-  auto decoded = decode(incoming.frame);
+  Session* const session = sessions_.of_peer(incoming.peer);
+  if (session == nullptr && incoming.frame.size() > k_frame_without_moves_bytes) {
+    // Most likely a request with many moves, of a session that was closed.
+    if (refusal_limit_.take(incoming.peer, clock_())) {
+      refuse(incoming.peer, RefusalReason::no_session, "a large frame without a session: say Hello first");
+    }
+    return;
+  }
+  auto decoded = decode(incoming.frame, limits_);
   if (const auto* error = std::get_if<DecodeError>(&decoded)) {
     refuse_malformed(incoming.peer, error->reason);
     return;
   }
-  if (Session* session = sessions_.of_peer(incoming.peer)) session->heard(clock_());
+  if (session != nullptr) session->heard(clock_());
   std::visit([&](auto&& message) { handle(incoming.peer, std::move(message)); },
              std::get<Message>(std::move(decoded)));
 }
@@ -128,6 +158,11 @@ void Service::handle(const PeerId& peer, Hello&& hello) {
   welcome.control_size = options_.pipeline.size;
   welcome.filter_length = options_.pipeline.filter_length;
   welcome.heartbeat_interval_s = options_.heartbeat_interval_s;
+  welcome.counter = options_.counter_name;
+  welcome.threshold = options_.pipeline.threshold_pixels;
+  welcome.control_rate_hz = options_.answer_rate_hz;
+  welcome.preset = options_.preset_name;
+  welcome.refine = options_.pipeline.refine;
   send(peer, welcome);
 }
 

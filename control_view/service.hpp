@@ -9,6 +9,7 @@
 #include "control_view/rate_limit.hpp"
 #include "control_view/session_table.hpp"
 #include "control_view/visibility_pipeline.hpp"
+#include "protocol/codec.hpp"
 #include "protocol/endpoint_link.hpp"
 #include "protocol/messages.hpp"
 
@@ -23,6 +24,8 @@ struct SceneIdentity {
 struct ServiceOptions {
   PipelineOptions pipeline;
   std::string engine_name = "item_buffer";
+  std::string counter_name;  ///< told to the clients, as is the preset's
+  std::string preset_name;
   std::uint32_t max_sessions = 16;
   double heartbeat_interval_s = 1.0;  ///< told to the clients: how often at least to be heard of
   double silence_limit_s = 5.0;       ///< a session not heard of for longer is closed
@@ -39,6 +42,9 @@ struct ServiceCounters {
   std::uint64_t reaped = 0;      ///< sessions closed for their silence
   std::uint64_t unsent = 0;      ///< frames whose peer was gone or did not read
 };
+
+/// A client's longest frame, bytes: a request that moves every object of the scene. For the link's limit.
+[[nodiscard]] std::size_t largest_frame_of_a_client(std::uint32_t object_count) noexcept;
 
 /// The daemon between its link and its engine. One thread; `step` is the loop's body.
 ///
@@ -60,7 +66,8 @@ class Service {
   [[nodiscard]] std::size_t session_count() const noexcept { return sessions_.size(); }
 
  private:
-  void drain(std::chrono::milliseconds timeout);
+  /// Returns whether nothing was left unread.
+  bool drain(std::chrono::milliseconds timeout);
   void answer(Session& session);
   [[nodiscard]] bool may_answer_now() const;
   [[nodiscard]] std::chrono::milliseconds wait_time(std::chrono::milliseconds timeout) const;
@@ -85,6 +92,7 @@ class Service {
   ServiceOptions options_;
   Clock clock_;
   SessionTable sessions_;
+  DecodeLimits limits_;
   ServiceCounters counters_;
   RateLimit refusal_limit_{1.0};
   RateLimit log_limit_{1.0};

@@ -32,7 +32,7 @@ Session::Session(std::uint64_t id, PeerId peer, std::string client_name, Visibil
 bool Session::accept(ViewRequest request, double now_s) {
   if (request.request_seq < newest_request_seq_) return true;
   newest_request_seq_ = request.request_seq;
-  apply_moves(edits_, std::move(request.moves));
+  if (apply_moves(edits_, std::move(request.moves))) request.reset_filter = true;
   request.moves.clear();
 
   const bool supersedes = pending_.has_value();

@@ -53,7 +53,7 @@ std::uint64_t StillViewRefiner::tile_count() const noexcept {
 
 // A whole view that was not widened and has the main image's size is that image already.
 bool StillViewRefiner::sweeps() const noexcept {
-  if (main_size_.width == 0 || main_size_.height == 0) return false;
+  if (main_size_.pixel_count() == 0 || main_size_.pixel_count() > k_max_refined_pixels) return false;
   return main_size_ != control_size_ || whole_view_error_rad_.value_or(0.0) > 0.0;
 }
 

@@ -15,11 +15,15 @@ namespace sightline {
 /// A whole view at control resolution misses slits thinner than a control pixel. While a client asks for the
 /// very same view again and again, this hands out tiles of the image the client draws, one a request, each no
 /// larger than the control image and with the projection not widened. After tile_count() requests every pixel
-/// of the main image has been looked at exactly, and nothing need be drawn until something changes.
+/// of the main image has been looked at exactly, and nothing need be drawn until something changes. An image
+/// above k_max_refined_pixels is not swept: whole views go on, as for a client that does not say its size.
 ///
 /// Knows nothing of the engine: ask next_look(), draw what it says, hand back the counts.
 class StillViewRefiner {
  public:
+  /// A tile is cut from a buffer of the whole image's size: a client must not choose how much memory that is.
+  static constexpr std::uint64_t k_max_refined_pixels = 3840 * 2160;
+
   explicit StillViewRefiner(ImageSize control_size) : control_size_(control_size) {}
 
   /// What a request's view depends on. Another view is one where any of these differs in any bit.

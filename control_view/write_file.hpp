@@ -8,4 +8,7 @@ namespace sightline {
 /// Throws InputError naming the file when that cannot be done.
 void write_file(const std::string& file, const std::string& text);
 
+/// Throws what write_file would throw, and leaves what `file` holds alone: to know before long work.
+void require_writable(const std::string& file);
+
 }  // namespace sightline

@@ -95,15 +95,15 @@ CurveKeys make_curve_keys() {
 }
 
 void write_curve_keys(const std::string& file, const CurveKeys& keys) {
-  std::string text = "public_key = \"" + keys.public_key + "\"\nsecret_key = \"" + keys.secret_key + "\"\n";
+  std::string text = "# A secret: who has this file can pose as its owner.\n";
+  text += "public_key = \"" + keys.public_key + "\"\nsecret_key = \"" + keys.secret_key + "\"\n";
   if (!keys.server_public_key.empty()) text += "server_public_key = \"" + keys.server_public_key + "\"\n";
 
   const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
   if (descriptor < 0 && errno == EEXIST) {
     throw InputError("key file '" + file + "' exists; remove it or choose another name");
   }
-  if (descriptor < 0)
-    throw MachineError("key file '" + file + "': cannot be written: " + std::strerror(errno));
+  if (descriptor < 0) throw InputError("key file '" + file + "': cannot be created: " + std::strerror(errno));
 
   const ssize_t written = ::write(descriptor, text.data(), text.size());
   const bool closed = ::close(descriptor) == 0;

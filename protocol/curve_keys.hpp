@@ -21,7 +21,8 @@ struct CurveKeys {
 [[nodiscard]] CurveKeys make_curve_keys();
 
 /// Writes what read_curve_keys reads, readable by its owner alone (mode 0600).
-/// Never replaces a file: throws InputError when it exists, MachineError when it cannot be written.
+/// Never replaces a file: throws InputError when it exists or cannot be created, MachineError when writing
+/// fails.
 void write_curve_keys(const std::string& file, const CurveKeys& keys);
 
 }  // namespace sightline

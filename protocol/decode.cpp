@@ -51,6 +51,11 @@ class Reader {
     message.control_size = size(from.control_size());
     message.filter_length = from.filter_length();
     message.heartbeat_interval_s = from.heartbeat_interval_s();
+    message.counter = text(from.counter(), "counter");
+    message.threshold = from.threshold();
+    message.control_rate_hz = from.control_rate_hz();
+    message.preset = text(from.preset(), "preset");
+    message.refine = from.refine();
     return message;
   }
 

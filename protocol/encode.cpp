@@ -60,10 +60,13 @@ Offset<void> body_to_wire(FlatBufferBuilder& builder, const Hello& message) {
 Offset<void> body_to_wire(FlatBufferBuilder& builder, const Welcome& message) {
   const auto server_name = text_to_wire(builder, message.server_name);
   const auto engine = text_to_wire(builder, message.engine);
+  const auto counter = text_to_wire(builder, message.counter);
+  const auto preset = text_to_wire(builder, message.preset);
   const wire::ImageSize control_size = to_wire(message.control_size);
   return wire::CreateWelcome(builder, message.version, message.session_id, server_name, engine,
                              message.object_count, &control_size, message.filter_length,
-                             message.heartbeat_interval_s)
+                             message.heartbeat_interval_s, counter, message.threshold,
+                             message.control_rate_hz, preset, message.refine)
       .Union();
 }
 

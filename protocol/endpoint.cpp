@@ -62,7 +62,9 @@ Endpoint parse_tcp(const std::string& text, LinkEnd end) {
 
 Endpoint parse_ipc(const std::string& text, LinkEnd end) {
   const std::string path = text.substr(k_ipc_scheme.size());
-  if (path.empty() || path == "@") refuse(text, "has no path; write ipc://PATH");
+  if (path.empty()) refuse(text, "has no path; write ipc://PATH");
+  // Anybody on the machine may connect to an abstract socket, and its name can be mistaken for a file's.
+  if (path.front() == '@') refuse(text, "abstract sockets (@) are not supported; write ipc://PATH");
   if (path == "*" && end == LinkEnd::client) refuse(text, "a client cannot connect to a wildcard");
   if (!is_clean_text(path)) refuse(text, "the path holds control characters or is not UTF-8");
   if (path.size() >= sizeof(sockaddr_un::sun_path)) {
@@ -93,8 +95,7 @@ Endpoint parse_endpoint(const std::string& text, LinkEnd end) {
 }
 
 void refuse_ipc_path_in_use(const Endpoint& endpoint) {
-  // The kernel itself refuses a second listener in the abstract namespace.
-  if (endpoint.transport != Transport::ipc || endpoint.path == "*" || endpoint.path.front() == '@') return;
+  if (endpoint.transport != Transport::ipc || endpoint.path == "*") return;
 
   struct stat status {};
   if (::lstat(endpoint.path.c_str(), &status) != 0) return;  // nothing there: bind says what else is wrong

@@ -18,8 +18,9 @@ using std::chrono::milliseconds;
 constexpr int k_reconnect_interval_ms = 50;
 constexpr int k_max_reconnect_interval_ms = 500;
 constexpr int k_handshake_timeout_ms = 5000;
-constexpr int k_transport_heartbeat_ms = 1000;
-constexpr int k_transport_timeout_ms = 5000;
+constexpr int k_keepalive_idle_s = 10;
+constexpr int k_keepalive_interval_s = 5;
+constexpr int k_keepalive_probes = 3;
 
 /// How long a closing link may wait for its last frames (a Goodbye, a Refusal because we shut down) to leave.
 constexpr int k_farewell_ms = 100;
@@ -54,8 +55,14 @@ void set_common_options(zmq::socket_t& socket, const Endpoint& endpoint, const L
   socket.set(zmq::sockopt::ipv6, endpoint.needs_ipv6() ? 1 : 0);
   socket.set(zmq::sockopt::handshake_ivl, k_handshake_timeout_ms);
   // Finds out about a peer whose machine vanished. The protocol's own Ping says whether it still serves.
-  socket.set(zmq::sockopt::heartbeat_ivl, k_transport_heartbeat_ms);
-  socket.set(zmq::sockopt::heartbeat_timeout, k_transport_timeout_ms);
+  // Not ZeroMQ's heartbeats: libzmq 4.3.4 writes them even to a connection that broke while its receive queue
+  // was full, and then aborts the process (assertion !_io_error), so that an ordinary client that dies could
+  // end the daemon.
+  socket.set(zmq::sockopt::heartbeat_ivl, 0);
+  socket.set(zmq::sockopt::tcp_keepalive, 1);
+  socket.set(zmq::sockopt::tcp_keepalive_idle, k_keepalive_idle_s);
+  socket.set(zmq::sockopt::tcp_keepalive_intvl, k_keepalive_interval_s);
+  socket.set(zmq::sockopt::tcp_keepalive_cnt, k_keepalive_probes);
 }
 
 /// Calls again while a signal interrupts; ZeroMQ's own calls that do not wait are short.

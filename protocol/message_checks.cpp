@@ -19,6 +19,10 @@ bool is_duration(double time_s) {
   return time_s >= 0.0 && time_s <= k_max_time_s;
 }
 
+bool is_setting(double value) {
+  return value >= 0.0 && value <= k_max_setting;
+}
+
 /// Both sides within the limit, and both zero or neither: half a size is a mistake.
 bool is_image_size(const ImageSize& size) {
   return size.width <= k_max_image_side && size.height <= k_max_image_side &&
@@ -110,6 +114,8 @@ Fault fault_of(const Welcome& message) {
   if (!(message.heartbeat_interval_s > 0.0 && message.heartbeat_interval_s <= k_max_heartbeat_interval_s)) {
     return "heartbeat_interval_s: not within 0 to 3600";
   }
+  if (!is_setting(message.threshold)) return "threshold: negative or not finite";
+  if (!is_setting(message.control_rate_hz)) return "control_rate_hz: negative or not finite";
   return {};
 }
 

@@ -19,6 +19,9 @@ inline constexpr double k_rigid_tolerance = 1e-4;
 inline constexpr double k_max_time_s = 1e12;
 inline constexpr double k_max_heartbeat_interval_s = 3600.0;
 
+/// Largest threshold (pixels) or control rate (Hz) that a daemon may state.
+inline constexpr double k_max_setting = 1e12;
+
 /// What is wrong with the values of a message, one line naming the field; empty when nothing is.
 /// Looks at numbers only: counts and texts are checked by `decode` before they are copied.
 /// A Hello or Refusal of another version has only what every version shares checked.

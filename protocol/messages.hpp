@@ -33,11 +33,16 @@ struct Welcome {
   std::uint16_t version = k_protocol_version;
   std::uint64_t session_id = 0;  ///< random, never 0
   std::string server_name;
-  std::string engine;
+  std::string engine;  ///< its name alone
   std::uint32_t object_count = 0;
   ImageSize control_size;
   std::uint32_t filter_length = 1;  ///< N of the low-pass filter, frames
   double heartbeat_interval_s = 1.0;
+  std::string counter;           ///< how the engine counts pixels; empty: the daemon does not say
+  double threshold = 0.0;        ///< mean pixels of the control image above which an object is visible
+  double control_rate_hz = 0.0;  ///< answers a second at most, 0: no limit
+  std::string preset;            ///< what the settings began as; empty: the daemon does not say
+  bool refine = false;           ///< whether the daemon sweeps the main image while the camera stands still
 
   bool operator==(const Welcome&) const = default;
 };

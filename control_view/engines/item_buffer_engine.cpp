@@ -102,7 +102,8 @@ class ItemBufferEngine final : public VisibilityEngine {
   /// stops and goes does not rebuild both each time.
   gl::ItemBuffer& buffer_of(ImageSize size, bool part) {
     std::optional<gl::ItemBuffer>& buffer = part ? part_buffer_ : whole_buffer_;
-    if (!buffer || buffer->size() != size) buffer.emplace(size);
+    if (!buffer) buffer.emplace(size);
+    if (buffer->size() != size) buffer->resize(size);
     return *buffer;
   }
 

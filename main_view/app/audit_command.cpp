@@ -23,10 +23,15 @@ namespace sightline {
 namespace {
 
 constexpr double k_answer_timeout_s = 60.0;  // real seconds; a software engine on a huge scene is slow
-constexpr std::uint32_t k_layers_every =
-    30;  // frames between two depth-complexity maps: they cost a full draw
+// Frames between two that are judged against every object rather than those in the view frustum, and whose
+// depth complexity is measured: either costs more than the rest of the frame.
+constexpr std::uint32_t k_thorough_every = 30;
 
 using RealClock = std::chrono::steady_clock;
+
+double clock_s() {
+  return std::chrono::duration<double>(RealClock::now().time_since_epoch()).count();
+}
 
 double seconds_since(RealClock::time_point start) {
   return std::chrono::duration<double>(RealClock::now() - start).count();
@@ -67,10 +72,13 @@ class Audit {
 
     const std::vector<Eye> eyes = eyes_of(head, core_.rig());
     const FrameDecision decision = core_.decide(now_s, eyes);
-    const FrameTruth& truth = judge_.look(eyes);
+    const bool thorough = frame % k_thorough_every == 0;
+    const FrameTruth& truth = judge_.look(
+        eyes, thorough ? FrameJudge::Thoroughness::everything : FrameJudge::Thoroughness::in_frustum);
     const std::vector<ObjectId>& drawn = draw_list_.visible(eyes, decision);
-    if (frame % k_layers_every == 0) measure_layers(eyes, truth.in_frustum, drawn);
-    return {path_s, judge_.judge(eyes, drawn), decision.fallback != Fallback::none};
+    if (thorough) measure_layers(eyes, truth.in_frustum, drawn);
+    return {path_s, judge_.judge(eyes, drawn), decision.fallback != Fallback::none, decision.last_age_s,
+            decision.next_lead_s};
   }
 
   [[nodiscard]] nlohmann::ordered_json report(const std::vector<FrameRecord>& frames, double wall_s) {
@@ -94,8 +102,13 @@ class Audit {
  private:
   Answer ask(const ViewRequest& request) {
     CullingSession& session = connection_.session();
+    // A session that was lost while a slow frame was judged is opened again, and the question asked.
+    session.poll(clock_s());
+    if (session.wait_until_open(k_answer_timeout_s) != SessionState::open) {
+      throw MachineError(connection_.endpoint() + ": the session is lost; is control_view still running?");
+    }
     const auto start = RealClock::now();
-    session.send(request, std::chrono::duration<double>(start.time_since_epoch()).count());
+    session.send(request, clock_s());
     std::optional<Answer> answer = session.wait_for(request.request_seq, k_answer_timeout_s);
     if (!answer) {
       throw MachineError(connection_.endpoint() + ": no answer to request " +
@@ -149,11 +162,16 @@ void print_summary(const nlohmann::ordered_json& quality, std::ostream& out) {
 
 void write_frames_csv(const std::filesystem::path& file, const std::vector<FrameRecord>& frames) {
   std::ofstream out(file);
-  out << "time_s,wrong_pixels,missed_objects,drawn_objects,visible_objects,fallback\n";
+  out << "time_s,wrong_pixels,missed_objects,drawn_objects,visible_objects,fallback,last_age_ms,next_lead_"
+         "ms\n";
   for (const FrameRecord& frame : frames) {
     const FrameVerdict& v = frame.verdict;
     out << frame.time_s << ',' << v.wrong_pixels << ',' << v.missed_objects << ',' << v.drawn_objects << ','
-        << v.visible_objects << ',' << frame.fallback << '\n';
+        << v.visible_objects << ',' << frame.fallback << ',';
+    if (frame.last_age_s) out << 1000.0 * *frame.last_age_s;
+    out << ',';
+    if (frame.next_lead_s) out << 1000.0 * *frame.next_lead_s;
+    out << '\n';
   }
   if (!out.flush()) throw InputError(file.string() + ": cannot be written; check the folder and its rights");
 }

@@ -22,32 +22,35 @@ FrameJudge::FrameJudge(const Scene& scene, gl::GpuScene& gpu_scene, ImageSize si
       culled_(size),
       seen_(scene.object_count()) {
   for (std::uint32_t i = 0; i < scene.object_count(); ++i) {
+    all_ids_.push_back(ObjectId{i});
     blended_.push_back(gpu_scene.has_layer(gl::Layer::blended, ObjectId{i}));
     triangles_.push_back(static_cast<std::uint32_t>(gpu_scene.triangle_count(ObjectId{i})));
     triangles_all_ += triangles_.back();
   }
 }
 
-const FrameTruth& FrameJudge::look(std::span<const Eye> eyes) {
+const FrameTruth& FrameJudge::look(std::span<const Eye> eyes, Thoroughness thoroughness) {
+  thoroughness_ = thoroughness;
   true_codes_.resize(eyes.size());
   seen_.assign(seen_.size(), false);
   truth_.in_frustum.clear();
   for (std::size_t i = 0; i < eyes.size(); ++i) {
-    look_at(eyes[i], true_codes_[i]);
+    look_at(eyes[i], thoroughness, true_codes_[i]);
     std::vector<ObjectId> both;
     std::set_union(truth_.in_frustum.begin(), truth_.in_frustum.end(), eye_ids_.begin(), eye_ids_.end(),
                    std::back_inserter(both));
     truth_.in_frustum = std::move(both);
   }
   truth_.visible.clear();
-  std::copy_if(truth_.in_frustum.begin(), truth_.in_frustum.end(), std::back_inserter(truth_.visible),
+  std::copy_if(all_ids_.begin(), all_ids_.end(), std::back_inserter(truth_.visible),
                [this](ObjectId id) { return seen_[index_of(id)]; });
   return truth_;
 }
 
-void FrameJudge::look_at(const Eye& eye, std::vector<ItemCode>& codes) {
+void FrameJudge::look_at(const Eye& eye, Thoroughness thoroughness, std::vector<ItemCode>& codes) {
   hierarchy_.collect_in_frustum(scene_frustum(eye, gpu_scene_.world_origin_m()), eye_ids_);
-  whole_.draw(gpu_scene_, eye, eye_ids_);
+  const std::vector<ObjectId>& drawn = thoroughness == Thoroughness::everything ? all_ids_ : eye_ids_;
+  whole_.draw(gpu_scene_, eye, drawn);
   whole_.read(codes);
   ItemCode last = k_background_code;
   for (const ItemCode code : codes) {
@@ -56,7 +59,7 @@ void FrameJudge::look_at(const Eye& eye, std::vector<ItemCode>& codes) {
     if (code != k_background_code) seen_[index_of(object_of(code))] = true;
   }
   eye_blended_.clear();
-  std::copy_if(eye_ids_.begin(), eye_ids_.end(), std::back_inserter(eye_blended_),
+  std::copy_if(drawn.begin(), drawn.end(), std::back_inserter(eye_blended_),
                [this](ObjectId id) { return blended_[index_of(id)]; });
   blended_pixels_.assign(eye_blended_.size(), 0);
   whole_.count_blended(gpu_scene_, eye, eye_blended_, blended_pixels_);
@@ -92,7 +95,8 @@ FrameVerdict FrameJudge::judge(std::span<const Eye> eyes, std::span<const Object
     missed_mask_.assign(drawn_codes_.size(), 0);
     if (!missed_blended.empty()) {
       // Against the true depth: what the culled image shows behind the glass is not the question.
-      whole_.draw(gpu_scene_, eyes[i], truth_.in_frustum);
+      whole_.draw(gpu_scene_, eyes[i],
+                  thoroughness_ == Thoroughness::everything ? all_ids_ : truth_.in_frustum);
       whole_.read_blended_mask(gpu_scene_, eyes[i], missed_blended, missed_mask_);
     }
     verdict.pixels += drawn_codes_.size();

@@ -37,8 +37,15 @@ class FrameJudge {
   /// `scene`'s bounds are copied; `gpu_scene` must outlive this.
   FrameJudge(const Scene& scene, gl::GpuScene& gpu_scene, ImageSize size);
 
-  /// Draws the whole scene for each eye and keeps the images for judge. Valid until the next look.
-  const FrameTruth& look(std::span<const Eye> eyes);
+  /// What the true image is drawn from.
+  enum class Thoroughness {
+    in_frustum,  ///< the objects that may intersect the view frustum: equal to everything as long as that
+                 ///< test errs on the safe side, and many times cheaper
+    everything  ///< every object of the scene: a fault of the frustum test shows as wrong pixels
+  };
+
+  /// Draws the true image for each eye and keeps it for judge. Valid until the next look.
+  const FrameTruth& look(std::span<const Eye> eyes, Thoroughness thoroughness = Thoroughness::in_frustum);
 
   /// Verdict on `drawn` (ascending), for the eyes of the last look.
   [[nodiscard]] FrameVerdict judge(std::span<const Eye> eyes, std::span<const ObjectId> drawn);
@@ -46,7 +53,7 @@ class FrameJudge {
   [[nodiscard]] const ObjectHierarchy& hierarchy() const noexcept { return hierarchy_; }
 
  private:
-  void look_at(const Eye& eye, std::vector<ItemCode>& codes);
+  void look_at(const Eye& eye, Thoroughness thoroughness, std::vector<ItemCode>& codes);
 
   gl::GpuScene& gpu_scene_;
   ObjectHierarchy hierarchy_;
@@ -58,7 +65,8 @@ class FrameJudge {
   std::vector<bool> seen_;
   std::vector<std::vector<ItemCode>> true_codes_;  ///< by eye
   std::vector<ItemCode> drawn_codes_;
-  std::vector<ObjectId> eye_ids_, eye_blended_;
+  std::vector<ObjectId> all_ids_, eye_ids_, eye_blended_;
+  Thoroughness thoroughness_ = Thoroughness::in_frustum;
   std::vector<std::uint32_t> blended_pixels_;
   std::vector<std::uint8_t> missed_mask_;
 };

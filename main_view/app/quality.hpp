@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include <nlohmann/json_fwd.hpp>
@@ -12,7 +13,8 @@ namespace sightline {
 struct FrameRecord {
   double time_s = 0.0;  ///< into the path
   FrameVerdict verdict;
-  bool fallback = false;  ///< drawn with view-frustum culling alone
+  bool fallback = false;                          ///< drawn with view-frustum culling alone
+  std::optional<double> last_age_s, next_lead_s;  ///< of the sets it was drawn with
 };
 
 /// The report's `quality`: fields as docs/architecture.md defines them.

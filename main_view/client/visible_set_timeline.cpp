@@ -40,4 +40,9 @@ const FiledSet* VisibleSetTimeline::next_after(double now_s) const noexcept {
   return after == sets_.end() ? nullptr : &*after;
 }
 
+std::span<const FiledSet> VisibleSetTimeline::all_after(double now_s) const noexcept {
+  const auto after = std::upper_bound(sets_.begin(), sets_.end(), now_s, k_is_after);
+  return std::span(sets_).subspan(static_cast<std::size_t>(after - sets_.begin()));
+}
+
 }  // namespace sightline

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "protocol/messages.hpp"
@@ -33,6 +34,8 @@ class VisibleSetTimeline {
   /// none. Valid until the timeline changes.
   [[nodiscard]] const FiledSet* last_at_or_before(double now_s) const noexcept;
   [[nodiscard]] const FiledSet* next_after(double now_s) const noexcept;
+  /// S_next and every set for a later time, nearest first. Valid until the timeline changes.
+  [[nodiscard]] std::span<const FiledSet> all_after(double now_s) const noexcept;
   [[nodiscard]] std::size_t size() const noexcept { return sets_.size(); }
 
  private:

@@ -215,6 +215,20 @@ TEST(ControlViewCli, BenchRefusesBadInput) {
                  "/nowhere/r.json");
   expect_refusal({"bench", "--scene", scene, "--path", path, "--json", json, "--engine", "magic"}, 2,
                  "magic");
+  for (const char* time : {"-300", "1e15"}) {
+    const std::string header = "t,px,py,pz,qw,qx,qy,qz\n";
+    const auto odd = folder.write("odd.csv", header + time + ",0,0,0,1,0,0,0\n").string();
+    expect_refusal({"bench", "--scene", scene, "--path", odd, "--json", json}, 2, odd);
+  }
+}
+
+TEST(ControlViewCli, BenchKeepsTheOldReportWhenItCannotMakeANewOne) {
+  const ScratchFolder folder;
+  const std::string path = folder.write("path.csv", "t,px,py,pz,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n").string();
+  const std::string json = folder.write("report.json", "precious").string();
+  const std::string broken = folder.write("broken.gltf", "{").string();
+  expect_refusal({"bench", "--scene", broken, "--path", path, "--json", json}, 2, broken);
+  EXPECT_EQ(read_text(json), "precious");
 }
 
 }  // namespace

@@ -35,6 +35,25 @@ TEST(ServiceHandshake, WelcomesAClientOfTheSameSceneAndVersion) {
   EXPECT_EQ(welcome.filter_length, 1u);
 }
 
+TEST(ServiceHandshake, TellsTheSettingsInForce) {
+  ServiceOptions options = Daemon::default_options();
+  options.pipeline.threshold_pixels = 2.5;
+  options.pipeline.refine = true;
+  options.answer_rate_hz = 60.0;
+  options.counter_name = "queries";
+  options.preset_name = "avango";
+  Daemon daemon(options);
+  Client client(daemon);
+  client.send(Hello{k_protocol_version, "test", k_digest});
+  const auto welcome = client.next_as<Welcome>();
+  EXPECT_EQ(welcome.engine, "item_buffer");
+  EXPECT_EQ(welcome.counter, "queries");
+  EXPECT_EQ(welcome.threshold, 2.5);
+  EXPECT_EQ(welcome.control_rate_hz, 60.0);
+  EXPECT_EQ(welcome.preset, "avango");
+  EXPECT_TRUE(welcome.refine);
+}
+
 TEST(ServiceHandshake, RefusesAnotherVersion) {
   Daemon daemon;
   Client client(daemon);
@@ -205,6 +224,31 @@ TEST(Service, ResetsTheFilterWhenAsked) {
   ViewRequest jump = client.request(3, 3.0);
   jump.reset_filter = true;
   EXPECT_EQ(client.ask(jump), seen_from(3.0));
+}
+
+TEST(Service, ResetsTheFilterWhenAnObjectJumpsAndNotWhenItMoves) {
+  ServiceOptions options = Daemon::default_options();
+  options.pipeline.filter_length = 8;
+  Daemon daemon(options);
+  Client client(daemon);
+  client.open();
+  const ObjectId moved{4321};
+  const auto with_moved = [&](VisibleSet set) {
+    set.unite(VisibleSet({&moved, 1}));
+    return set;
+  };
+  (void)client.ask(client.request(1, 1.0));
+  ViewRequest jump = client.request(2, 2.0);
+  jump.moves = {move_of(4321, 5.0)};
+  EXPECT_EQ(client.ask(jump), with_moved(seen_from(2.0))) << "what was seen before the jump is forgotten";
+  ViewRequest step = client.request(3, 3.0);
+  step.moves = {move_of(4321, 5.1)};
+  VisibleSet both = seen_from(2.0);
+  both.unite(seen_from(3.0));
+  EXPECT_EQ(client.ask(step), with_moved(both)) << "a small step keeps the history";
+  ViewRequest leap = client.request(4, 4.0);
+  leap.moves = {move_of(4321, 9.0)};
+  EXPECT_EQ(client.ask(leap), with_moved(seen_from(4.0)));
 }
 
 TEST(Service, HoldsTheAnswerRate) {
@@ -393,6 +437,61 @@ TEST(ServiceUnderAttack, HarmsNobodyElse) {
   }
   attacker.send_bytes(Bytes{});
   good.settle();
+}
+
+TEST(ServiceUnderAttack, DecodesNoLargeFrameOfAPeerWithoutASession) {
+  Daemon daemon;
+  Client stranger(daemon);
+  ViewRequest large = stranger.request(1, 1.0);
+  for (std::uint32_t id = 0; id < 1000; ++id) large.moves.push_back(move_of(id, 1.0));
+  ASSERT_GT(encode(large).size(), 64u << 10);
+  stranger.send(large);
+  EXPECT_EQ(stranger.next_as<Refusal>().reason, RefusalReason::no_session);
+  stranger.open();
+  large.session_id = stranger.session_id;
+  EXPECT_GE(stranger.ask(large).size(), 1000u) << "with a session it is a request like any other";
+}
+
+TEST(ServiceUnderAttack, TakesNoMoreMovesThanThereAreObjects) {
+  Daemon daemon;
+  Client client(daemon);
+  client.open();
+  ViewRequest request = client.request(1, 1.0);
+  for (std::uint32_t id = 0; id < k_object_count; ++id) request.moves.push_back(move_of(id, 1.0));
+  EXPECT_LE(encode(request).size(), largest_frame_of_a_client(k_object_count));
+  EXPECT_EQ(client.ask(request).size(), k_object_count);
+  request.request_seq = 2;
+  request.moves.push_back(move_of(0, 1.0));
+  client.send(request);
+  const auto refusal = client.next_as<Refusal>();
+  EXPECT_EQ(refusal.reason, RefusalReason::malformed);
+  EXPECT_NE(refusal.text.find("moves: 5001, at most 5000"), std::string::npos) << refusal.text;
+}
+
+TEST(ServiceUnderAttack, ReadsABoundedAmountBeforeItAnswers) {
+  Daemon daemon;
+  Client good(daemon);
+  Client flood(daemon);
+  good.open();
+  // Half a frame limit each: a hundred of them are three bounds of a step.
+  for (int i = 0; i < 100; ++i) flood.send_bytes(Bytes(32u << 10));
+  good.send(good.request(1, 1.0));
+  EXPECT_EQ(good.next_as<VisibleSetFrame>().request_seq, 1u);
+  EXPECT_EQ(flood.next_as<Refusal>().reason, RefusalReason::malformed);
+  flood.settle();
+  EXPECT_EQ(daemon.service.counters().malformed, 100u) << "every frame is read in the end";
+}
+
+TEST(ServiceUnderAttack, ReapsNobodyWhoseWordsItHasNotRead) {
+  Daemon daemon;
+  Client good(daemon);
+  Client flood(daemon);
+  good.open();
+  for (int i = 0; i < 900; ++i) flood.send(Ping{1, 1.0});
+  daemon.now_s += 6.0;  // above the silence limit, with frames waiting
+  good.send(good.request(1, 1.0));
+  EXPECT_EQ(good.next_as<VisibleSetFrame>().request_seq, 1u);
+  EXPECT_EQ(daemon.service.counters().reaped, 0u);
 }
 
 TEST(ServiceUnderAttack, RefusesMovesOfObjectsThatAreNotThere) {

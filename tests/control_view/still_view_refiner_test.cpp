@@ -96,6 +96,19 @@ TEST(StillViewRefiner, DrawsWholeViewsForAClientThatDoesNotSayItsSize) {
   EXPECT_FALSE(refiner.complete());
 }
 
+TEST(StillViewRefiner, SweepsNoImageLargerThanItsLimit) {
+  StillViewRefiner refiner(k_control);
+  refiner.begin(request_from(1.0, {3840, 2160}), 0);
+  refiner.add_whole_view({}, 0.0);
+  EXPECT_EQ(refiner.next_look(0.0), Refine::tile);
+  for (const ImageSize huge : {ImageSize{3841, 2160}, {k_max_image_side, k_max_image_side}}) {
+    refiner.begin(request_from(1.0, huge), 0);
+    refiner.add_whole_view({}, 0.0);
+    EXPECT_EQ(refiner.next_look(0.0), Refine::whole_view);
+    EXPECT_FALSE(refiner.complete());
+  }
+}
+
 TEST(StillViewRefiner, LooksAtTheWholeAgainWhenTheErrorGrowsAndKeepsItsTiles) {
   StillViewRefiner refiner(k_control);
   refiner.begin(request_from(1.0), 0);

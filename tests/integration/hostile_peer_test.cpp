@@ -35,6 +35,16 @@ std::optional<Wanted> receive(ClientLink& link, milliseconds timeout = milliseco
   return std::nullopt;
 }
 
+/// Sends a frame, and waits for room in the queue so that it does leave. False when there is none in time.
+bool send_surely(ClientLink& link, const Bytes& frame, milliseconds timeout = milliseconds(10'000)) {
+  const auto deadline = std::chrono::steady_clock::now() + timeout;
+  while (!link.send(frame)) {
+    if (std::chrono::steady_clock::now() >= deadline) return false;
+    (void)link.receive(milliseconds(1));
+  }
+  return true;
+}
+
 class HostilePeer : public ::testing::Test {
  protected:
   SessionOptions honest_options() {
@@ -90,17 +100,18 @@ TEST_F(HostilePeer, DoesNotDisturbAnHonestSession) {
   std::mt19937 random(99);
   const Bytes valid = encode(Hello{.client_name = "hostile", .scene_digest = scene_.digest});
   for (std::size_t length = 0; length < valid.size(); ++length) {
-    hostile.send(Bytes(valid.begin(), valid.begin() + static_cast<std::ptrdiff_t>(length)));
+    const Bytes prefix(valid.begin(), valid.begin() + static_cast<std::ptrdiff_t>(length));
+    ASSERT_TRUE(send_surely(hostile, prefix));
   }
   for (int i = 0; i < 500; ++i) {
     Bytes noise(random() % 2000);
     for (std::byte& b : noise) b = std::byte(random());
-    hostile.send(noise);
+    ASSERT_TRUE(send_surely(hostile, noise));
     Bytes flipped = valid;
     flipped[random() % flipped.size()] ^= std::byte(1u << (random() % 8));
-    hostile.send(flipped);
+    ASSERT_TRUE(send_surely(hostile, flipped));
   }
-  hostile.send(Bytes(80u << 20));  // above the limit: ZeroMQ cuts the connection
+  ASSERT_TRUE(send_surely(hostile, Bytes(80u << 20)));  // above the limit: ZeroMQ cuts the connection
 
   for (int i = 0; i < 5; ++i) {
     const auto after = ask(honest, core);
@@ -108,6 +119,28 @@ TEST_F(HostilePeer, DoesNotDisturbAnHonestSession) {
     EXPECT_EQ(after->set, before->set);  // the camera stands still
   }
   EXPECT_EQ(honest.lost_count(), 0u);
+}
+
+TEST_F(HostilePeer, MayFloodTheDaemonAndGo) {
+  for (int round = 0; round < 3; ++round) {
+    LinkOptions roomy;
+    roomy.send_queue_length = 5000;
+    ClientLink hostile(daemon_.endpoint(), roomy);
+    ASSERT_TRUE(send_surely(hostile, encode(Hello{.client_name = "hostile", .scene_digest = scene_.digest})));
+    const auto welcome = receive<Welcome>(hostile);
+    ASSERT_TRUE(welcome);
+    ViewRequest request;
+    request.session_id = welcome->session_id;
+    request.request_seq = 1;
+    request.main_size = {16384, 16384};
+    request.eyes.assign(8, Eye{glm::dmat4(1.0), clip_from_camera(Perspective{}, 4.0 / 3.0)});
+    ASSERT_TRUE(send_surely(hostile, encode(request)));
+    for (int i = 0; i < 3000; ++i) ASSERT_TRUE(send_surely(hostile, encode(Ping{1, 1.0})));
+  }
+  CullingSession honest(honest_options());
+  CullingCore core({}, {{glm::dmat4(1.0), clip_from_camera(Perspective{}, 4.0 / 3.0)}});
+  ASSERT_EQ(honest.wait_until_open(20.0), SessionState::open);
+  for (int i = 0; i < 3; ++i) ASSERT_TRUE(ask(honest, core)) << "the daemon no longer answers";
 }
 
 TEST_F(HostilePeer, CannotUseASessionThatIsNotItsOwn) {

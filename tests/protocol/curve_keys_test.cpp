@@ -52,7 +52,7 @@ TEST_F(CurveKeyFile, IsForItsOwnerOnlyAndNeverReplaced) {
   EXPECT_EQ(status.st_mode & 0777, 0600u);
   EXPECT_THROW(write_curve_keys(file_, make_curve_keys()), InputError);
   EXPECT_EQ(read_curve_keys(file_).secret_key, keys.secret_key);
-  EXPECT_THROW(write_curve_keys(directory_.file("none/keys.toml"), keys), MachineError);
+  EXPECT_THROW(write_curve_keys(directory_.file("none/keys.toml"), keys), InputError);
 }
 
 TEST_F(CurveKeyFile, RefusesWrongContentNamingTheField) {

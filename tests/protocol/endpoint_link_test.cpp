@@ -299,6 +299,29 @@ TEST(Link, SurvivesAPeerThatSpeaksNoZeroMq) {
   ::close(raw);
 }
 
+// libzmq 4.3.4 with heartbeats on aborted the process here: it wrote one to a connection that was known to be
+// broken, but not yet closed because its frames waited for room in the receive queue.
+TEST(Link, SurvivesAPeerThatFloodsItAndGoes) {
+  ServerLink server(k_loopback);
+  PeerId peer;
+  {
+    LinkOptions roomy;
+    roomy.send_queue_length = 5000;
+    ClientLink hostile(server.bound_endpoint(), roomy);
+    peer = deliver(hostile, server, "here");
+    for (int i = 0; i < 5000; ++i) (void)hostile.send(Bytes(80));
+  }
+  // What is written to it now tells the server's side that the connection is broken.
+  for (int i = 0; i < 3; ++i) (void)server.send(peer, bytes_of("anybody there?"));
+  ClientLink honest(server.bound_endpoint());
+  EXPECT_FALSE(honest.receive(2500ms));  // nothing is read meanwhile: two heartbeats would have come due
+  ASSERT_TRUE(honest.send(bytes_of("question")));
+  EXPECT_TRUE(eventually([&] {
+    const auto incoming = server.receive(20ms);
+    return incoming && text_of(incoming->frame) == "question";
+  }));
+}
+
 TEST(Link, NamesAnEndpointInUse) {
   const ServerLink server(k_loopback);
   EXPECT_THAT(machine_error_of(server.bound_endpoint()), HasSubstr(server.bound_endpoint() + "' is in use"));

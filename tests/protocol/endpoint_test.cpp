@@ -22,7 +22,7 @@ bool is_accepted(const std::string& text, LinkEnd end) {
 TEST(Endpoint, AcceptsAddressesForBothEnds) {
   for (const char* text :
        {"tcp://127.0.0.1:5555", "tcp://localhost:1", "tcp://control_view:65535", "tcp://[::1]:80",
-        "tcp://[fe80::1]:5555", "ipc:///tmp/sightline", "ipc://relative", "ipc://@abstract"}) {
+        "tcp://[fe80::1]:5555", "ipc:///tmp/sightline", "ipc://relative"}) {
     EXPECT_TRUE(is_accepted(text, LinkEnd::client)) << text;
     EXPECT_TRUE(is_accepted(text, LinkEnd::server)) << text;
   }
@@ -60,6 +60,7 @@ TEST(Endpoint, RefusesEverythingElse) {
                                   std::string("http://127.0.0.1:80"),
                                   std::string("ipc://"),
                                   std::string("ipc://@"),
+                                  std::string("ipc://@abstract"),
                                   "ipc://" + std::string(108, 'x'),
                                   std::string("ipc://a\0b", 9)}) {
     EXPECT_FALSE(is_accepted(text, LinkEnd::client)) << text;

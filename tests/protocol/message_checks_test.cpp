@@ -147,6 +147,10 @@ TEST(WelcomeChecks, RefuseEveryWrongField) {
     EXPECT_THAT(refusal([=](Welcome& w) { w.heartbeat_interval_s = bad; }),
                 HasSubstr("heartbeat_interval_s"));
   }
+  for (const double bad : {k_nan, k_infinity, -1.0}) {
+    EXPECT_THAT(refusal([=](Welcome& w) { w.threshold = bad; }), HasSubstr("threshold"));
+    EXPECT_THAT(refusal([=](Welcome& w) { w.control_rate_hz = bad; }), HasSubstr("control_rate_hz"));
+  }
 }
 
 TEST(VisibleSetFrameChecks, RefuseEveryWrongField) {

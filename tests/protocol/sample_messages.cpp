@@ -149,7 +149,7 @@ std::vector<NamedMessage> golden_messages() {
   return {
       {"hello", Hello{k_protocol_version, "example", golden_digest()}},
       {"welcome", Welcome{k_protocol_version, 0x0123456789ABCDEF, "control_view 0.1.0", "item_buffer", 70'001,
-                          ImageSize{512, 384}, 8, 1.0}},
+                          ImageSize{512, 384}, 8, 1.0, "histogram", 0.5, 60.0, "default", true}},
       {"refusal", Refusal{RefusalReason::scene_mismatch, "this daemon serves another scene",
                           k_protocol_version, golden_digest()}},
       {"view_request", request},
@@ -193,7 +193,12 @@ Message random_message(std::size_t kind, std::mt19937_64& random) {
                      random_integer<std::uint32_t>(random) / 2,
                      random_size(random),
                      1 + random_integer<std::uint32_t>(random) / 2,
-                     random_real(random, 0.01, 100.0)};
+                     random_real(random, 0.01, 100.0),
+                     random_text(random),
+                     random_real(random, 0.0, 100.0),
+                     random_real(random, 0.0, 1000.0),
+                     random_text(random),
+                     random() % 2 == 0};
     case 2:
       return Refusal{static_cast<RefusalReason>(1 + random() % 6), random_text(random),
                      random_integer<std::uint16_t>(random), random_digest(random)};
