@@ -19,8 +19,8 @@ struct CameraPath {
 
 /// Reads a CSV with the header `t,px,py,pz,qw,qx,qy,qz` (seconds, metres, camera to world).
 /// Quaternions are normalised. Throws InputError naming the file and the line: a missing file, a missing or
-/// extra column, a value that is not a finite number, a time that is negative, does not increase or lies beyond
-/// 1e6 s (a clock's time: subtract the first), a zero quaternion, no sample at all.
+/// extra column, a value that is not a finite number, a time that is negative, does not increase or lies
+/// beyond 1e6 s (a clock's time: subtract the first), a zero quaternion, no sample at all.
 [[nodiscard]] CameraPath read_camera_path(const std::filesystem::path& file);
 
 /// Writes the same format. Throws InputError when the file cannot be written.

@@ -52,8 +52,8 @@ struct Perspective {
 /// Only perspective projections widen (bottom row 0 0 -1 0); any other is returned as it is. Edges are capped
 /// at 80 degrees from the axis, beyond which one planar image no longer serves.
 ///
-/// Near moves in and far out (by up to ten times, an infinite far stays), since a turned camera's near corners
-/// come closer and its far corners go further along the unturned axis.
+/// Near moves in and far out (by up to ten times, an infinite far stays), since a turned camera's near
+/// corners come closer and its far corners go further along the unturned axis.
 [[nodiscard]] glm::dmat4 widened(const glm::dmat4& clip_from_camera, double angle_rad) noexcept;
 
 /// The two eyes of a head pose: `separation_m` apart along the camera's X axis, parallel.

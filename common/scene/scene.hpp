@@ -94,9 +94,9 @@ struct Scene {
 /// world_origin_m is zero and the scene's centre lies further than 1 km from it on any axis, the origin
 /// becomes the rounded centre. Adds a material where there is none. Loaders and generators call it last.
 ///
-/// The digest covers what decides visibility: vertices, triangles, materials, transforms, object order, and for
-/// textured MASK materials the texture and its coordinates. It is the same with and without what only shading
-/// needs, and with and without meshes that no object uses.
+/// The digest covers what decides visibility: vertices, triangles, materials, transforms, object order, and
+/// for textured MASK materials the texture and its coordinates. It is the same with and without what only
+/// shading needs, and with and without meshes that no object uses.
 ///
 /// Throws InputError (prefixed with `name`) when the scene breaks a rule above: an index out of range, a
 /// non-finite vertex or transform, no object with a triangle, more than k_max_object_count objects, or

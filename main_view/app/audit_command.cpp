@@ -45,7 +45,7 @@ class Audit {
         path_(read_camera_path(options.scene.path)),
         frame_count_(options.replay.frame_count(path_.duration_s())),
         scene_(load_scene(options.scene.scene, {.shading = false})),
-        connection_(options.scene.scene, scene_, options.service),
+        connection_(options.scene.scene, scene_, options.service.on_virtual_clock()),
         context_(gl::make_offscreen_context(options.scene.context)),
         gpu_scene_(scene_, false),
         judge_(scene_, gpu_scene_, options.scene.size),

@@ -8,8 +8,8 @@
 namespace sightline {
 
 /// `main_view audit`: replays a camera path on a virtual clock through both real processes and counts wrong
-/// pixels. service.control_rate_hz is the most requests a virtual second that the daemon starts (30 when
-/// empty).
+/// pixels. service.control_rate_hz is the most requests a VIRTUAL second that the daemon starts (every
+/// request when empty); the daemon itself is not told of it, see ServiceOptions::on_virtual_clock.
 struct AuditOptions {
   SceneOptions scene;
   ReplayOptions replay;

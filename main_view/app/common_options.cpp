@@ -1,6 +1,8 @@
 #include "main_view/app/common_options.hpp"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <numbers>
 
@@ -72,12 +74,24 @@ void ReplayOptions::validate() const {
   require(eye_separation_m >= 0.0 && eye_separation_m <= 1.0, "--eye-separation: give 0 to 1 m");
 }
 
+std::string digits_of(double value) {
+  std::array<char, 32> digits{};
+  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
+  return {digits.data(), end};
+}
+
+ServiceOptions ServiceOptions::on_virtual_clock() const {
+  ServiceOptions options = *this;
+  options.control_rate_hz.reset();
+  return options;
+}
+
 void ServiceOptions::validate(bool required) const {
   require(!(spawn && !connect.empty()), "--connect and --spawn exclude each other: give one");
+  require(!spawn || key_file.empty(),
+          "--keys is for --connect: a control_view that --spawn starts listens on this machine only, without "
+          "keys");
   require(!required || wanted(), "no daemon: give --connect ENDPOINT or --spawn");
-  require(
-      connect.empty() || (!counter && !threshold && !preset),
-      "--counter, --threshold and --preset are for --spawn: give them to the running control_view instead");
   require(!filter || (*filter >= 1 && *filter <= 1024), "--filter: give 1 to 1024 frames");
   require(!threshold || (*threshold >= 0.0 && std::isfinite(*threshold)),
           "--threshold: give 0 pixels or more");
@@ -94,7 +108,19 @@ void require_settings(const ServiceOptions& options, const Welcome& daemon) {
   const auto text = [](ImageSize size) {
     return std::to_string(size.width) + "x" + std::to_string(size.height);
   };
-  if (options.engine && *options.engine != daemon.engine) differs("--engine", daemon.engine, *options.engine);
+  const auto compare_name = [&](const char* option, const std::optional<std::string>& wanted,
+                                const std::string& is) {
+    if (wanted && *wanted != is) differs(option, is.empty() ? "one that it does not tell" : is, *wanted);
+  };
+  const auto compare_number = [&](const char* option, std::optional<double> wanted, double is) {
+    if (wanted && *wanted != is) differs(option, digits_of(is), digits_of(*wanted));
+  };
+  // A daemon may add to the name, behind a slash, how its engine works.
+  compare_name("--engine", options.engine, daemon.engine.substr(0, daemon.engine.find('/')));
+  compare_name("--counter", options.counter, daemon.counter);
+  compare_name("--preset", options.preset, daemon.preset);
+  compare_number("--threshold", options.threshold, daemon.threshold);
+  compare_number("--control-rate", options.control_rate_hz, daemon.control_rate_hz);
   if (options.filter && *options.filter != daemon.filter_length) {
     differs("--filter", std::to_string(daemon.filter_length), std::to_string(*options.filter));
   }

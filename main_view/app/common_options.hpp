@@ -56,8 +56,7 @@ struct ReplayOptions {
 };
 
 /// Which daemon, and with which settings. Empty settings are the daemon's own defaults. A daemon that --spawn
-/// starts is handed them; of one that --connect finds, engine, filter and control size are demanded (see
-/// require_settings), and counter, threshold and preset, which its Welcome does not tell, are refused.
+/// starts is handed them; of one that --connect finds they are demanded (see require_settings).
 struct ServiceOptions {
   std::string connect;             ///< endpoint of a running daemon
   bool spawn = false;              ///< start one for the length of the run
@@ -74,9 +73,15 @@ struct ServiceOptions {
   std::optional<double> guard_deg;  ///< the daemon sees this much more on every side of the predicted view
 
   [[nodiscard]] bool wanted() const noexcept { return spawn || !connect.empty(); }
+  /// The same for a replay on a virtual clock, whose rate is its own affair: without control_rate_hz, which
+  /// would make the daemon wait in real time.
+  [[nodiscard]] ServiceOptions on_virtual_clock() const;
   /// `required`: whether the command cannot do without a daemon. Throws InputError naming the option.
   void validate(bool required) const;
 };
+
+/// The shortest digits that read back as the same number.
+[[nodiscard]] std::string digits_of(double value);
 
 /// Throws InputError when a running daemon has other settings than the options ask for.
 void require_settings(const ServiceOptions& options, const Welcome& daemon);

@@ -1,11 +1,28 @@
 #include "main_view/app/draw_list.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
+#include <limits>
 
 #include <glm/gtc/matrix_transform.hpp>
 
 namespace sightline {
+namespace {
+
+/// The box moved by `offset_m`. Errs towards larger: by one float step (at 1,000 km, 6 cm) on each side,
+/// where rounding alone errs by half of one either way.
+Aabb moved_outwards(const Aabb& box, const glm::dvec3& offset_m) {
+  constexpr float k_infinity = std::numeric_limits<float>::infinity();
+  Aabb moved;
+  for (int axis = 0; axis < 3; ++axis) {
+    moved.min[axis] = std::nextafter(static_cast<float>(box.min[axis] + offset_m[axis]), -k_infinity);
+    moved.max[axis] = std::nextafter(static_cast<float>(box.max[axis] + offset_m[axis]), k_infinity);
+  }
+  return moved;
+}
+
+}  // namespace
 
 const std::vector<ObjectId>& DrawListBuilder::in_frustum(std::span<const Eye> eyes) {
   in_frustum_.clear();
@@ -29,11 +46,8 @@ const std::vector<ObjectId>& DrawListBuilder::visible(std::span<const Eye> eyes,
   in_frustum(eyes);
   if (decision.fallback != Fallback::none) return in_frustum_;
   visible_.clear();
-  const glm::vec3 origin(world_origin_m_);
   for (const ObjectId id : in_frustum_) {
-    Aabb world_bounds = hierarchy_.bounds_of(id);
-    world_bounds.min += origin;
-    world_bounds.max += origin;
+    const Aabb world_bounds = moved_outwards(hierarchy_.bounds_of(id), world_origin_m_);
     if (decision.may_be_visible(id, world_bounds)) visible_.push_back(id);
   }
   return visible_;

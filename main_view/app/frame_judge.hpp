@@ -41,7 +41,7 @@ class FrameJudge {
   enum class Thoroughness {
     in_frustum,  ///< the objects that may intersect the view frustum: equal to everything as long as that
                  ///< test errs on the safe side, and many times cheaper
-    everything  ///< every object of the scene: a fault of the frustum test shows as wrong pixels
+    everything   ///< every object of the scene: a fault of the frustum test shows as wrong pixels
   };
 
   /// Draws the true image for each eye and keeps it for judge. Valid until the next look.

@@ -6,6 +6,7 @@
 #include "common/scene/generate_city.hpp"
 #include "common/scene/generate_crowd.hpp"
 #include "common/scene/write_glb.hpp"
+#include "main_view/app/output_file.hpp"
 
 namespace sightline {
 namespace {
@@ -39,10 +40,13 @@ ExitCode run_generate(const GenerateOptions& options, std::ostream& log) {
   }
   if (options.out.extension() != ".glb")
     throw InputError("--out: " + options.out.string() + " must end in .glb");
+  require_writable(options.out, "--out");
+  if (!options.path_out.empty()) require_writable(options.path_out, "--path-out");
   const Scene scene = generator.scene(options.objects, options.seed);
-  write_glb(options.out, scene);
+  write_whole(options.out, [&scene](const auto& partial) { write_glb(partial, scene); });
   if (!options.path_out.empty()) {
-    write_camera_path(options.path_out, generator.path(options.objects, options.seed));
+    const CameraPath path = generator.path(options.objects, options.seed);
+    write_whole(options.path_out, [&path](const auto& partial) { write_camera_path(partial, path); });
   }
   log << options.out.string() << ": " << scene.object_count() << " objects, " << scene.triangle_count()
       << " triangles, digest " << to_hex(scene.digest) << '\n';

@@ -94,7 +94,8 @@ class Player {
     return report;
   }
 
-  /// Pictures of one moment of the path, drawn with what the first culling keeps there.
+  /// Pictures of one moment of the path, drawn with what the first culling keeps there; with --stereo of the
+  /// left eye.
   ImageSetResult write_images(const std::filesystem::path& folder) {
     const double path_s = options_.image_at_s.value_or(options_.replay.start_s +
                                                        0.5 * (frame_count_ - 1) / options_.replay.rate_hz);
@@ -273,7 +274,8 @@ ExitCode run_play(const PlayOptions& options) {
   nlohmann::ordered_json report = player.report();
   if (!options.out.empty()) {
     const ImageSetResult images = player.write_images(options.out);
-    report["images"] = {{"wrong_pixels", images.wrong_pixels},
+    report["images"] = {{"eye", options.replay.stereo ? "left" : "only"},
+                        {"wrong_pixels", images.wrong_pixels},
                         {"depth_complexity_frustum_max", images.depth_complexity_frustum_max},
                         {"depth_complexity_drawn_max", images.depth_complexity_drawn_max}};
     write_frames_csv(options.out / "frames.csv", player.runs());

@@ -1,12 +1,12 @@
 #include "main_view/app/play_report.hpp"
 
 #include <algorithm>
-#include <fstream>
+#include <ostream>
 
 #include <nlohmann/json.hpp>
 
-#include "common/error.hpp"
 #include "common/statistics.hpp"
+#include "main_view/app/output_file.hpp"
 
 namespace sightline {
 namespace {
@@ -111,22 +111,25 @@ nlohmann::ordered_json timing_of(const std::vector<PlayRun>& runs, const Service
 }
 
 void write_frames_csv(const std::filesystem::path& file, const std::vector<PlayRun>& runs) {
-  std::ofstream out(file);
-  out << "frame";
-  for (const PlayRun& run : runs) {
-    const std::string name = to_string(run.mode);
-    out << ',' << name << "_ms," << name << "_objects," << name << "_triangles";
-  }
-  out << '\n';
-  for (std::size_t i = 0; i < runs.front().frames.size(); ++i) {
-    out << runs.front().frames[i].frame;
+  // A window closed early leaves later runs shorter than the first.
+  std::size_t count = runs.front().frames.size();
+  for (const PlayRun& run : runs) count = std::min(count, run.frames.size());
+  write_whole_text(file, [&](std::ostream& out) {
+    out << "frame";
     for (const PlayRun& run : runs) {
-      const FrameTiming& frame = run.frames[i];
-      out << ',' << 1000.0 * frame.frame_s << ',' << frame.drawn_objects << ',' << frame.drawn_triangles;
+      const std::string name = to_string(run.mode);
+      out << ',' << name << "_ms," << name << "_objects," << name << "_triangles";
     }
     out << '\n';
-  }
-  if (!out.flush()) throw InputError(file.string() + ": cannot be written; check the folder and its rights");
+    for (std::size_t i = 0; i < count; ++i) {
+      out << runs.front().frames[i].frame;
+      for (const PlayRun& run : runs) {
+        const FrameTiming& frame = run.frames[i];
+        out << ',' << 1000.0 * frame.frame_s << ',' << frame.drawn_objects << ',' << frame.drawn_triangles;
+      }
+      out << '\n';
+    }
+  });
 }
 
 }  // namespace sightline

@@ -13,6 +13,7 @@
 
 #include "common/camera_path.hpp"
 #include "common/error.hpp"
+#include "common/statistics.hpp"
 #include "main_view/client/motion_predictor.hpp"
 
 namespace sightline {
@@ -92,22 +93,6 @@ void predict_segment(const Segment& segment, const CullingOptions& options, std:
   }
 }
 
-double mean(const std::vector<double>& values) {
-  double sum = 0.0;
-  for (const double value : values) sum += value;
-  return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
-}
-
-/// Nearest rank.
-double quantile(std::vector<double> values, double share) {
-  if (values.empty()) return 0.0;
-  const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size())));
-  const auto at =
-      values.begin() + static_cast<std::ptrdiff_t>(std::clamp(rank, std::size_t{1}, values.size()) - 1);
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
-
 nlohmann::json row_of(const std::string& trace, int horizon, const Predictor& predictor,
                       const Errors& errors) {
   const double count = static_cast<double>(std::max<std::size_t>(errors.position_mm.size(), 1));
@@ -115,12 +100,12 @@ nlohmann::json row_of(const std::string& trace, int horizon, const Predictor& pr
           {"horizon", horizon},
           {"predictor", predictor.name},
           {"predictions", errors.position_mm.size()},
-          {"position_mm_mean", mean(errors.position_mm)},
-          {"position_mm_p95", quantile(errors.position_mm, 0.95)},
-          {"position_mm_p99", quantile(errors.position_mm, 0.99)},
-          {"rotation_deg_mean", mean(errors.rotation_deg)},
-          {"rotation_deg_p95", quantile(errors.rotation_deg, 0.95)},
-          {"rotation_deg_p99", quantile(errors.rotation_deg, 0.99)},
+          {"position_mm_mean", mean_of(errors.position_mm)},
+          {"position_mm_p95", quantile_of(errors.position_mm, 0.95)},
+          {"position_mm_p99", quantile_of(errors.position_mm, 0.99)},
+          {"rotation_deg_mean", mean_of(errors.rotation_deg)},
+          {"rotation_deg_p95", quantile_of(errors.rotation_deg, 0.95)},
+          {"rotation_deg_p99", quantile_of(errors.rotation_deg, 0.99)},
           {"position_covered", static_cast<double>(errors.position_covered) / count},
           {"rotation_covered", static_cast<double>(errors.rotation_covered) / count}};
 }
@@ -158,7 +143,7 @@ void print_summary(const nlohmann::json& rows, const PredictOptions& options) {
         for (const auto& [trace, error] : own) {
           if (error > 1e-6 && papers[trace] > 1e-6) logarithms.push_back(std::log(error / papers[trace]));
         }
-        std::printf("  k=%-3d %5.2f", horizon, std::exp(mean(logarithms)));
+        std::printf("  k=%-3d %5.2f", horizon, std::exp(mean_of(logarithms)));
       }
       std::printf("\n");
     }

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <sys/utsname.h>
 
-#include "common/error.hpp"
+#include "main_view/app/output_file.hpp"
 
 namespace sightline {
 namespace {
@@ -66,40 +66,25 @@ nlohmann::ordered_json settings_of(const SceneOptions& scene, const ReplayOption
   settings["predictor_order"] = culling.predictor_order;
   settings["predictor_window"] = culling.predictor_window;
   settings["min_guard_deg"] = culling.min_guard_rad * 180.0 / 3.14159265358979323846;
+  settings["max_guard_deg"] = culling.max_guard_rad * 180.0 / 3.14159265358979323846;
   settings["max_staleness_s"] = culling.max_staleness_s;
   if (daemon) {
     settings["engine"] = daemon->engine;
     settings["control_size"] = text(daemon->control_size);
     settings["filter"] = daemon->filter_length;
+    settings["counter"] = daemon->counter;
+    settings["threshold"] = daemon->threshold;
+    settings["preset"] = daemon->preset;
+    settings["refine"] = daemon->refine;
+    settings["control_rate_hz"] = daemon->control_rate_hz;  // 0: no limit
   }
-  if (service.counter) settings["counter"] = *service.counter;
-  if (service.threshold) settings["threshold"] = *service.threshold;
-  if (service.preset) settings["preset"] = *service.preset;
+  // That of a virtual clock the daemon does not know.
   if (service.control_rate_hz) settings["control_rate_hz"] = *service.control_rate_hz;
   return settings;
 }
 
 void write_report(const std::filesystem::path& file, const nlohmann::ordered_json& report) {
-  const std::filesystem::path partial = file.string() + ".partial";
-  {
-    std::ofstream out(partial);
-    out << report.dump(2) << '\n';
-    if (!out.flush())
-      throw InputError(file.string() + ": cannot be written; check the folder and its rights");
-  }
-  std::error_code error;
-  std::filesystem::rename(partial, file, error);
-  if (error) throw InputError(file.string() + ": cannot be written: " + error.message());
-}
-
-void require_writable(const std::filesystem::path& file, const char* option) {
-  const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error || !std::filesystem::is_directory(folder) || std::filesystem::is_directory(file)) {
-    throw InputError(std::string(option) + " " + file.string() +
-                     ": name a file in a folder that can be written");
-  }
+  write_whole_text(file, [&report](std::ostream& out) { out << report.dump(2) << '\n'; });
 }
 
 }  // namespace sightline

@@ -5,6 +5,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "main_view/app/common_options.hpp"
+#include "main_view/app/output_file.hpp"  // require_writable, for who writes reports
 #include "main_view/client/culling_session.hpp"
 
 namespace sightline {
@@ -20,8 +21,5 @@ namespace sightline {
 
 /// Writes indented JSON, whole or not at all (through a file beside it). Throws InputError naming the file.
 void write_report(const std::filesystem::path& file, const nlohmann::ordered_json& report);
-
-/// Throws InputError now rather than after the run when `file` cannot be written.
-void require_writable(const std::filesystem::path& file, const char* option);
 
 }  // namespace sightline

@@ -37,6 +37,9 @@ void ServiceConnection::require_open(double timeout_s) {
       throw InputError(endpoint_ + " refuses the session: " + to_string(session_.refusal()->reason) + ", " +
                        session_.refusal()->text);
     case SessionState::connecting:
+      if (session_.refusal()) {
+        throw MachineError(endpoint_ + " refuses the session for now: " + session_.refusal()->text);
+      }
       throw MachineError(endpoint_ + ": no control_view answers; start one there or use --spawn");
   }
 }

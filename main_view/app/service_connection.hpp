@@ -14,8 +14,8 @@ namespace sightline {
 /// A session with the daemon that ServiceOptions ask for, and that daemon itself where --spawn starts it.
 class ServiceConnection {
  public:
-  /// Starts or finds the daemon. Does not wait for the session to open.
-  /// `timeout_s`: how long a spawned daemon may take to load its scene.
+  /// Starts the daemon (see SpawnedDaemon: blocks until it has loaded its scene) or only names it. Does not
+  /// wait for the session to open.
   ServiceConnection(const std::filesystem::path& scene_file, const Scene& scene,
                     const ServiceOptions& options);
 
@@ -25,8 +25,6 @@ class ServiceConnection {
 
   [[nodiscard]] CullingSession& session() noexcept { return session_; }
   [[nodiscard]] const std::string& endpoint() const noexcept { return endpoint_; }
-  /// Process id of a spawned daemon, or -1.
-  [[nodiscard]] pid_t daemon_process_id() const noexcept { return daemon_ ? daemon_->process_id() : -1; }
 
  private:
   ServiceOptions options_;

@@ -56,8 +56,8 @@ std::vector<std::string> daemon_command(const std::filesystem::path& scene, cons
   if (options.engine) hand_on("--engine", *options.engine);
   if (options.counter) hand_on("--counter", *options.counter);
   if (options.filter) hand_on("--filter", std::to_string(*options.filter));
-  if (options.threshold) hand_on("--threshold", std::to_string(*options.threshold));
-  if (options.control_rate_hz) hand_on("--control-rate", std::to_string(*options.control_rate_hz));
+  if (options.threshold) hand_on("--threshold", digits_of(*options.threshold));
+  if (options.control_rate_hz) hand_on("--control-rate", digits_of(*options.control_rate_hz));
   if (options.preset) hand_on("--preset", *options.preset);
   if (options.control_size) {
     hand_on("--size",

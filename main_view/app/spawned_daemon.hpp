@@ -24,7 +24,6 @@ class SpawnedDaemon {
   SpawnedDaemon& operator=(const SpawnedDaemon&) = delete;
 
   [[nodiscard]] const std::string& endpoint() const noexcept { return endpoint_; }
-  [[nodiscard]] pid_t process_id() const noexcept { return process_id_; }
 
  private:
   void stop() noexcept;

@@ -52,14 +52,12 @@ double speed_for(const Aabb& bounds) {
 
 }  // namespace
 
-Viewer::Sized::Sized(DrawableScene& scene, const ViewOptions& options, ImageSize window_size)
+Viewer::Sized::Sized(DrawableScene& scene, ImageSize window_size)
     : size(window_size),
       target(window_size),
       judge(scene.scene(), scene.gpu(), window_size),
       items(window_size),
-      complexity(window_size),
-      core(culling_options_of(options.service),
-           rig_of(with_size(options.scene, window_size), ReplayOptions{})) {}
+      complexity(window_size) {}
 
 Viewer::Viewer(const ViewOptions& options, Scene scene, CameraPath path)
     : options_(options),
@@ -70,6 +68,7 @@ Viewer::Viewer(const ViewOptions& options, Scene scene, CameraPath path)
                                                  options.scene.scene, scene_.scene(), options.service)
                                            : nullptr),
       draw_list_(scene_.hierarchy(), scene_.scene().world_origin_m),
+      core_(culling_options_of(options.service), rig_of(options.scene, ReplayOptions{})),
       panel_(*context_),
       camera_(first_pose(options, path_, scene_.scene())),
       path_s_(options.start_s),
@@ -95,7 +94,7 @@ bool Viewer::step() {
   handle_mouse();
   move_camera(std::min(start_s - since_last_s, k_longest_step_s));
 
-  const Eye eye{camera_from_world(camera_.pose()), sized_->core.rig().front().clip_from_camera};
+  const Eye eye{camera_from_world(camera_.pose()), core_.rig().front().clip_from_camera};
   if (connection_) take_answers(start_s);
   if (!frozen_) choose_objects(eye, start_s);
   if (options_.frozen && !frozen_ && status_.fallback.empty()) {
@@ -125,7 +124,9 @@ void Viewer::follow_window_size() {
                        static_cast<std::uint32_t>(std::max(height, 0))};
   const bool usable = size.width > 0 && size.height > 0;
   if (sized_ && (!usable || sized_->size == size)) return;
-  sized_.emplace(scene_, options_, usable ? size : options_.scene.size);
+  const ImageSize taken = usable ? size : options_.scene.size;
+  sized_.emplace(scene_, taken);
+  core_.set_rig(rig_of(with_size(options_.scene, taken), ReplayOptions{}));
 }
 
 bool Viewer::pressed(int key) {
@@ -199,12 +200,12 @@ void Viewer::take_answers(double time_s) {
   CullingSession& session = connection_->session();
   for (const Answer& answer : session.poll(time_s)) {
     const double received_s = now_s();
-    sized_->core.accept(answer.request, answer.issued_s, answer.set, received_s);
+    core_.accept(answer.request, answer.issued_s, answer.set, received_s);
     status_.round_trip_s = received_s - answer.issued_s;
   }
   if (session.lost_count() != lost_seen_) {
     lost_seen_ = session.lost_count();
-    sized_->core.forget_sets();
+    core_.forget_sets();
   }
 }
 
@@ -234,9 +235,9 @@ void Viewer::choose_with_service(const Eye& eye, double time_s) {
     drawn_ = draw_list_.in_frustum(eyes);
     return;
   }
-  sized_->core.add_pose({time_s, camera_.pose()});
-  connection_->session().send(sized_->core.make_request(time_s, sized_->size), time_s);
-  const FrameDecision decision = sized_->core.decide(time_s, eyes);
+  core_.add_pose({time_s, camera_.pose()});
+  connection_->session().send(core_.make_request(time_s, sized_->size), time_s);
+  const FrameDecision decision = core_.decide(time_s, eyes);
   drawn_ = draw_list_.visible(eyes, decision);
   status_.fallback = why(decision.fallback);
   status_.last_age_s = decision.last_age_s;
@@ -271,7 +272,7 @@ void Viewer::toggle_freeze() {
     frozen_.reset();
     return;
   }
-  const Eye eye{camera_from_world(camera_.pose()), sized_->core.rig().front().clip_from_camera};
+  const Eye eye{camera_from_world(camera_.pose()), core_.rig().front().clip_from_camera};
   frozen_ = Frozen{eye, drawn_, seen_depth_m(scene_.scene(), eye, drawn_)};
   status_.playing = false;
 }
@@ -282,6 +283,7 @@ void Viewer::describe_service() {
   switch (session.state()) {
     case SessionState::connecting:
       status_.service_state = "connecting to " + connection_->endpoint();
+      if (session.refusal()) status_.service_state += ": " + session.refusal()->text;
       break;
     case SessionState::open:
       status_.service_state = "open: " + session.welcome()->engine + " at " +

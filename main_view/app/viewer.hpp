@@ -37,13 +37,12 @@ class Viewer {
   };
   /// Everything that depends on the window's size.
   struct Sized {
-    Sized(DrawableScene& scene, const ViewOptions& options, ImageSize size);
+    Sized(DrawableScene& scene, ImageSize size);
     ImageSize size;
     RenderTarget target;
     FrameJudge judge;
     gl::ItemBuffer items;
     DepthComplexity complexity;
-    CullingCore core;
   };
 
   void follow_window_size();
@@ -64,6 +63,7 @@ class Viewer {
   DrawableScene scene_;
   std::unique_ptr<ServiceConnection> connection_;
   DrawListBuilder draw_list_;
+  CullingCore core_;  ///< outlives the window's size: the session counts on its numbering
   Overlay overlay_;
   ViewPanel panel_;
   std::optional<Sized> sized_;

@@ -31,6 +31,19 @@ CullingOptions validated(CullingOptions options) {
   return options;
 }
 
+std::vector<RigEye> validated(std::vector<RigEye> rig) {
+  if (rig.empty() || rig.size() > k_max_eyes) {
+    throw InputError("rig has " + std::to_string(rig.size()) + " eyes: give 1 to " +
+                     std::to_string(k_max_eyes));
+  }
+  for (const RigEye& eye : rig) {
+    if (is_finite(eye.camera_from_head) && is_finite(eye.clip_from_camera)) continue;
+    throw InputError(
+        "rig has an eye whose matrices are not finite: give a rigid camera_from_head and a projection");
+  }
+  return rig;
+}
+
 }  // namespace
 
 std::vector<Eye> eyes_of(const Pose& head, std::span<const RigEye> rig) {
@@ -44,27 +57,27 @@ std::vector<Eye> eyes_of(const Pose& head, std::span<const RigEye> rig) {
 
 CullingCore::CullingCore(CullingOptions options, std::vector<RigEye> rig)
     : options_(validated(options)),
-      rig_(std::move(rig)),
+      rig_(validated(std::move(rig))),
       history_(options_),
       predictor_(options_),
-      horizon_(options_) {
-  if (rig_.empty() || rig_.size() > k_max_eyes) {
-    throw InputError("rig has " + std::to_string(rig_.size()) + " eyes: give 1 to " +
-                     std::to_string(k_max_eyes));
-  }
-  for (const RigEye& eye : rig_) {
-    if (is_finite(eye.camera_from_head) && is_finite(eye.clip_from_camera)) continue;
-    throw InputError(
-        "rig has an eye whose matrices are not finite: give a rigid camera_from_head and a projection");
-  }
+      horizon_(options_) {}
+
+void CullingCore::drop_sets() noexcept {
+  timeline_.clear();
+  first_valid_request_seq_ = next_request_seq_;
+}
+
+void CullingCore::set_rig(std::vector<RigEye> rig) {
+  rig_ = validated(std::move(rig));
+  drop_sets();
+  reset_pending_ = true;
 }
 
 void CullingCore::add_pose(const TimedPose& head) {
   const PoseHistory::Added added = history_.add(head);
   if (added == PoseHistory::Added::ignored) return;
   if (added == PoseHistory::Added::jumped) {
-    timeline_.clear();
-    first_valid_request_seq_ = next_request_seq_;
+    drop_sets();
     reset_pending_ = true;
   }
   if (added != PoseHistory::Added::continued) predictor_.forget_pending();
@@ -77,7 +90,12 @@ void CullingCore::move_objects(std::span<const ObjectMove> moves) {
     throw InputError("move of object " + std::to_string(index_of(move.id)) +
                      " is not finite: give a placement");
   }
-  for (const ObjectMove& move : moves) placements_[move.id] = {move.world_from_object, 0, false};
+  for (const ObjectMove& move : moves) {
+    const auto held = placements_.find(move.id);
+    if (held != placements_.end() && held->second.world_from_object == move.world_from_object) continue;
+    placements_[move.id] = {move.world_from_object, 0, false};
+    drop_sets();
+  }
 }
 
 double CullingCore::guard_rad(const PredictedPose& predicted) const noexcept {
@@ -126,8 +144,7 @@ void CullingCore::accept(const ViewRequest& request, double issued_s, const Visi
 }
 
 void CullingCore::forget_sets() {
-  timeline_.clear();
-  first_valid_request_seq_ = next_request_seq_;
+  drop_sets();
   reset_pending_ = true;
   horizon_.restart_interval();
   for (auto& [id, placement] : placements_) placement = {placement.world_from_object, 0, false};
@@ -148,35 +165,31 @@ bool CullingCore::usable(const FiledSet& filed, double now_s, std::span<const Ey
   return true;
 }
 
-VisibleSet CullingCore::moved_since(std::uint64_t request_seq) const {
-  std::vector<ObjectId> ids;
-  for (const auto& [id, placement] : placements_) {
-    if (placement.first_request_seq == 0 || placement.first_request_seq > request_seq) ids.push_back(id);
-  }
-  return VisibleSet(ids);
-}
-
 FrameDecision CullingCore::decide(double now_s, std::span<const Eye> eyes) const {
   FrameDecision decision;
   decision.eye_count = eyes.size();
   const FiledSet* last = timeline_.last_at_or_before(now_s);
-  const FiledSet* next = timeline_.next_after(now_s);
-  if (last == nullptr && next == nullptr) return decision;
-  if (last != nullptr && !usable(*last, now_s, eyes)) last = nullptr;
-  if (next != nullptr && !usable(*next, now_s, eyes)) next = nullptr;
-  if (last == nullptr && next == nullptr) {
+  const std::span<const FiledSet> next = timeline_.all_after(now_s);
+  if (last == nullptr && next.empty()) return decision;
+  std::vector<const FiledSet*> used;
+  if (last != nullptr && usable(*last, now_s, eyes)) {
+    used.push_back(last);
+    decision.last_age_s = now_s - last->request.for_time_s;
+  }
+  for (const FiledSet& filed : next) {
+    if (!usable(filed, now_s, eyes)) continue;
+    used.push_back(&filed);
+    if (!decision.next_lead_s) decision.next_lead_s = filed.request.for_time_s - now_s;
+  }
+  if (used.empty()) {
     decision.fallback = Fallback::stale;
     return decision;
   }
 
   decision.fallback = Fallback::none;
-  if (last != nullptr) decision.last_age_s = now_s - last->request.for_time_s;
-  if (next != nullptr) decision.next_lead_s = next->request.for_time_s - now_s;
   std::vector<bool> covered(eyes.size(), false);
-  for (const FiledSet* filed : {last, next}) {
-    if (filed == nullptr) continue;
+  for (const FiledSet* filed : used) {
     decision.visible.unite(filed->set);
-    decision.visible.unite(moved_since(filed->request.request_seq));
     for (std::size_t i = 0; i < eyes.size(); ++i) {
       const Eye& requested = filed->request.eyes[i];
       decision.tested.push_back(tested_field(requested, filed->request.rotation_error_rad));

@@ -34,7 +34,7 @@ struct RigEye {
 
 enum class Fallback {
   none,
-  no_set,  ///< nothing has arrived yet, or since the last jump or lost session
+  no_set,  ///< nothing has arrived yet, or since the last jump, moved object, new rig or lost session
   stale    ///< the nearest sets are too far from now
 };
 
@@ -54,7 +54,7 @@ class FrameDecision {
   [[nodiscard]] bool may_be_visible(ObjectId id, const Aabb& world_bounds) const;
 
   Fallback fallback = Fallback::no_set;
-  VisibleSet visible;               ///< S_last OR S_next
+  VisibleSet visible;               ///< S_last OR S_next, with every later set at hand: see all_after
   bool field_covered = false;       ///< the whole view frustum was tested; world_bounds is then not looked at
   std::vector<Frustum> tested;      ///< the widened fields of S_last and S_next, world frame; for display
   std::vector<TestedField> fields;  ///< without field_covered: what may_be_visible decides by
@@ -78,9 +78,16 @@ class CullingCore {
   /// changed then.
   void add_pose(const TimedPose& head);
 
+  /// Other eyes from now on, as after a resized window: the sets at hand were tested through other
+  /// projections and are forgotten. Requests keep their numbering, so that the session goes on. Throws
+  /// InputError for a rig that the constructor would refuse; nothing changed then.
+  void set_rig(std::vector<RigEye> rig);
+
   /// Objects' new placements. Each goes out with every request until a set arrives that answers one, and
-  /// again to a daemon that comes back. A moved object is drawn until every set in use knows where it is.
-  /// Throws InputError for a placement that is not finite; nothing changed then.
+  /// again to a daemon that comes back. A placement that differs from the object's last one makes all sets
+  /// asked for before it useless, for they also leave out what the object hid where it was: everything in the
+  /// frustum is drawn until a newer one arrives, so always while something moves in every frame. Throws
+  /// InputError for a placement that is not finite; nothing changed then.
   void move_objects(std::span<const ObjectMove> moves);
 
   /// The view expected at now + horizon. session_id and acked_set_seq are the link's to fill.
@@ -90,7 +97,7 @@ class CullingCore {
   [[nodiscard]] ViewRequest make_request(double now_s, ImageSize main_size);
 
   /// Files an answer under the time it is for. `request` is the one it answers; answers to requests from
-  /// before the last jump are dropped. The round trip (received - issued) moves the horizon.
+  /// before the last jump, move or new rig are dropped. The round trip (received - issued) moves the horizon.
   void accept(const ViewRequest& request, double issued_s, const VisibleSet& set, double received_s);
 
   /// The daemon or its session is gone: forget all sets. All moved objects will be told anew.
@@ -114,7 +121,8 @@ class CullingCore {
 
   [[nodiscard]] double guard_rad(const PredictedPose& predicted) const noexcept;
   [[nodiscard]] bool usable(const FiledSet& filed, double now_s, std::span<const Eye> eyes) const;
-  [[nodiscard]] VisibleSet moved_since(std::uint64_t request_seq) const;
+  /// No set at hand or on its way serves any longer.
+  void drop_sets() noexcept;
 
   CullingOptions options_;
   std::vector<RigEye> rig_;

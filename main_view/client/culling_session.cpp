@@ -17,6 +17,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr int k_max_frames_a_poll = 256;   // a daemon gone mad must not hold up the picture
 constexpr double k_longest_backoff = 4.0;  // times reconnect_interval_s
+constexpr double k_clock_slack = 1.01;     // adding an interval to a clock and taking it off again rounds
 constexpr double k_pings_a_silence = 4.0;  // pings sent before silence counts as a loss
 
 double seconds_since(Clock::time_point start) {
@@ -113,7 +114,7 @@ void CullingSession::Impl::take_frame(const Bytes& frame, double now_s) {
 void CullingSession::Impl::say_hello(double now_s) {
   // A virtual clock may run slower than the real one that wait_until_open counted by.
   const double longest_s = options.reconnect_interval_s * k_longest_backoff;
-  if (next_hello_s && now_s < *next_hello_s && *next_hello_s - now_s <= longest_s) return;
+  if (next_hello_s && now_s < *next_hello_s && *next_hello_s - now_s <= k_clock_slack * longest_s) return;
   // Anew each time, or the Hellos that pile up while nobody listens would all open a session.
   if (next_hello_s) link.reconnect();
   send_message(Hello{k_protocol_version, options.client_name, options.scene_digest});
@@ -169,6 +170,7 @@ void CullingSession::Impl::on(const Welcome& message, double) {
     in_flight.clear();
   }
   welcome = message;
+  refusal.reset();
   state = SessionState::open;
   hello_backoff = 1.0;
 }
@@ -177,8 +179,13 @@ void CullingSession::Impl::on(const Refusal& message, double now_s) {
   switch (message.reason) {
     case RefusalReason::version_mismatch:
     case RefusalReason::scene_mismatch:
-    case RefusalReason::limit:
       refuse(message);
+      return;
+    case RefusalReason::limit:
+      lose();
+      refusal = message;
+      hello_backoff = k_longest_backoff;  // a place may come free, but hardly at once
+      next_hello_s = now_s + options.reconnect_interval_s * hello_backoff;
       return;
     case RefusalReason::malformed:
       ++bad_frames;
@@ -191,6 +198,10 @@ void CullingSession::Impl::on(const Refusal& message, double now_s) {
       next_hello_s = now_s + options.reconnect_interval_s;  // the daemon is going: not at once
       return;
   }
+  // A newer daemon's reason, of which only this much is known.
+  Refusal unknown = message;
+  unknown.reason = RefusalReason::version_mismatch;
+  refuse(std::move(unknown));
 }
 
 void CullingSession::Impl::on(VisibleSetFrame message, double) {

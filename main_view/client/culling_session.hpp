@@ -31,8 +31,9 @@ struct Answer {
 };
 
 /// The session with one daemon: handshake, heartbeat, reconnect, deltas against the last acknowledged set.
-/// Never blocks except in wait_for; a refused session (other version, other scene) stays refused and says
-/// why.
+/// Never blocks except in wait_for and wait_until_open. A refused session (other version, other scene, a
+/// reason only a newer daemon has) stays refused and says why. A daemon that is full (RefusalReason::limit)
+/// is asked again, four reconnect_interval_s apart: the session stays connecting meanwhile, and says why.
 class CullingSession {
  public:
   explicit CullingSession(SessionOptions options);
@@ -53,7 +54,7 @@ class CullingSession {
   [[nodiscard]] SessionState state() const noexcept;
   /// The daemon's Welcome, while open.
   [[nodiscard]] const std::optional<Welcome>& welcome() const noexcept;
-  /// Why the session was refused, while refused.
+  /// Why the session was refused, while refused; or, while connecting, what a full daemon said last.
   [[nodiscard]] const std::optional<Refusal>& refusal() const noexcept;
   /// Goes up each time an open session is lost: the caller then forgets its sets.
   [[nodiscard]] std::uint64_t lost_count() const noexcept;

@@ -22,9 +22,9 @@ void require_usable(const TimedPose& sample) {
 
 }  // namespace
 
-PoseHistory::PoseHistory(const CullingOptions& options) : options_(options) {
-  // Two poses at least: with a window of one the speed must still be known.
-  samples_.reserve(static_cast<std::size_t>(std::max(options.predictor_window, 2)) + 1);
+PoseHistory::PoseHistory(const CullingOptions& options)
+    : options_(options), limit_(static_cast<std::size_t>(std::max(options.predictor_window, 2))) {
+  samples_.reserve(limit_ + 1);
 }
 
 PoseHistory::Added PoseHistory::add(const TimedPose& sample) {
@@ -58,7 +58,7 @@ PoseHistory::Added PoseHistory::add(const TimedPose& sample) {
   }
   last_velocity_m_per_s_ = velocity;
   samples_.push_back(held);
-  if (samples_.size() == samples_.capacity()) samples_.erase(samples_.begin());
+  if (samples_.size() > limit_) samples_.erase(samples_.begin());
   newest_as_given_ = sample;
   return result;
 }

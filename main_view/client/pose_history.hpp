@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -42,6 +43,7 @@ class PoseHistory {
   [[nodiscard]] bool is_jump(const TimedPose& from, const TimedPose& to) const noexcept;
 
   CullingOptions options_;
+  std::size_t limit_;  ///< poses held: the window, but two at least, for the speed
   std::vector<TimedPose> samples_;
   /// Of the last two poses, even where the later one was taken for a jump: a second step like the first is
   /// motion.

@@ -126,6 +126,15 @@ TEST(GenerateCommand, WritesTheSameBytesForTheSameSeed) {
   EXPECT_NE(log.str().find("60 objects"), std::string::npos);
 }
 
+TEST(GenerateCommand, LeavesNothingBehindWhenOneOfItsFilesCannotBeWritten) {
+  const testing::TemporaryFolder folder;
+  const auto scene = folder / "new/scene.glb";
+  expect_one_line(run({"generate", "city", "--objects", "5", "--out", scene.c_str(), "--path-out",
+                       folder.path().c_str()}),
+                  2, "--path-out");
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
 TEST(GenerateCommand, RefusesKindsAndCountsItDoesNotHave) {
   const testing::TemporaryFolder folder;
   const auto file = folder / "scene.glb";

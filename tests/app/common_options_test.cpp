@@ -85,6 +85,55 @@ TEST(ServiceOptions, DemandsItsSettingsOfARunningDaemon) {
   EXPECT_NE(refusal([&] { require_settings(service, daemon); }).find("--control-size"), std::string::npos);
 }
 
+TEST(ServiceOptions, DemandsCounterThresholdPresetAndRateToo) {
+  Welcome daemon;
+  daemon.engine = "item_buffer/histogram";
+  daemon.counter = "histogram";
+  daemon.threshold = 0.25;
+  daemon.preset = "avango";
+  daemon.control_rate_hz = 30.0;
+  ServiceOptions same;
+  same.connect = "tcp://127.0.0.1:1";
+  same.engine = "item_buffer";
+  same.counter = daemon.counter;
+  same.threshold = daemon.threshold;
+  same.preset = daemon.preset;
+  same.control_rate_hz = daemon.control_rate_hz;
+  EXPECT_EQ(refusal([&] { same.validate(true); }), "");
+  EXPECT_EQ(refusal([&] { require_settings(same, daemon); }), "");
+
+  const auto refused = [&](const char* option, const std::function<void(ServiceOptions&)>& change) {
+    ServiceOptions other = same;
+    change(other);
+    EXPECT_NE(refusal([&] { require_settings(other, daemon); }).find(option), std::string::npos) << option;
+  };
+  refused("--engine", [](ServiceOptions& o) { o.engine = "item"; });
+  refused("--counter", [](ServiceOptions& o) { o.counter = "queries"; });
+  refused("--threshold", [](ServiceOptions& o) { o.threshold = 0.5; });
+  refused("--preset", [](ServiceOptions& o) { o.preset = "default"; });
+  refused("--control-rate", [](ServiceOptions& o) { o.control_rate_hz = 15.0; });
+}
+
+TEST(ServiceOptions, TakesKeysForADaemonThatRunsOnly) {
+  ServiceOptions service;
+  service.key_file = "keys.toml";
+  service.connect = "tcp://127.0.0.1:1";
+  EXPECT_EQ(refusal([&] { service.validate(true); }), "");
+  service.connect.clear();
+  service.spawn = true;
+  EXPECT_NE(refusal([&] { service.validate(true); }).find("--keys"), std::string::npos);
+}
+
+TEST(ServiceOptions, HandsNumbersOnToTheLastDigit) {
+  for (const double value : {0.0, 1e-7, 0.1, 1.0 / 3.0, 1e300}) EXPECT_EQ(std::stod(digits_of(value)), value);
+  ServiceOptions service;
+  service.threshold = 1e-7;
+  service.control_rate_hz = 30.0;
+  const ServiceOptions virtual_clock = service.on_virtual_clock();
+  EXPECT_EQ(virtual_clock.threshold, 1e-7);
+  EXPECT_FALSE(virtual_clock.control_rate_hz);
+}
+
 TEST(CullingMode, ReadsItsOwnNames) {
   for (const CullingMode mode :
        {CullingMode::none, CullingMode::frustum, CullingMode::service, CullingMode::oracle}) {

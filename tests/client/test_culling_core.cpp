@@ -45,7 +45,7 @@ TEST(CullingCore, DrawsEverythingInTheFrustumUntilASetArrives) {
   EXPECT_TRUE(decision.may_be_visible(ObjectId{12345}, k_nowhere));
 }
 
-TEST(CullingCore, DrawsWhatTheSetBeforeOrTheSetAfterNowHolds) {
+TEST(CullingCore, DrawsWhatTheSetBeforeOrAnySetAfterNowHolds) {
   CullingCore core({}, one_eye());
   core.add_pose({1.0, pose_at(0.0)});
   core.accept(request_for(core, 0.9, 1, pose_at(0.0)), 0.8, set_of({1}), 0.9);
@@ -54,7 +54,7 @@ TEST(CullingCore, DrawsWhatTheSetBeforeOrTheSetAfterNowHolds) {
   core.accept(request_for(core, 1.05, 4, pose_at(0.0)), 0.9, set_of({4}), 1.0);
   const FrameDecision decision = core.decide(1.0, eyes_of(pose_at(0.0), core.rig()));
   EXPECT_EQ(decision.fallback, Fallback::none);
-  EXPECT_EQ(decision.visible, set_of({2, 3}));
+  EXPECT_EQ(decision.visible, set_of({2, 3, 4}));
   EXPECT_TRUE(decision.field_covered);
   EXPECT_TRUE(decision.may_be_visible(ObjectId{2}, k_nowhere));
   EXPECT_TRUE(decision.may_be_visible(ObjectId{3}, k_nowhere));
@@ -164,7 +164,7 @@ TEST(CullingCore, SendsAMoveUntilASetAnswersARequestThatCarriedIt) {
   EXPECT_EQ(carrying.moves[0].id, ObjectId{7});
   core.accept(before, 0.0, set_of({1}), 0.0);
   const auto eyes = eyes_of(pose_at(0.0), core.rig());
-  EXPECT_TRUE(core.decide(0.0, eyes).visible.contains(ObjectId{7}));  // that set knows nothing of the move
+  EXPECT_TRUE(core.decide(0.0, eyes).may_be_visible(ObjectId{7}, k_nowhere));  // that set knows no move
   EXPECT_EQ(core.make_request(0.0, k_size).moves.size(), 1u);
   core.accept(carrying, 0.0, set_of({1}), 0.0);
   EXPECT_FALSE(core.decide(0.0, eyes).visible.contains(ObjectId{7}));
@@ -172,6 +172,53 @@ TEST(CullingCore, SendsAMoveUntilASetAnswersARequestThatCarriedIt) {
 
   core.forget_sets();  // a daemon that comes back has loaded the scene as it was
   EXPECT_EQ(core.make_request(0.0, k_size).moves.size(), 1u);
+}
+
+TEST(CullingCore, DrawsWhatAMovedObjectMayHaveHidden) {
+  CullingCore core({}, one_eye());
+  core.add_pose({0.0, pose_at(0.0)});
+  const auto eyes = eyes_of(pose_at(0.0), core.rig());
+  const ObjectId hidden{8};
+  ObjectMove door{ObjectId{7}, glm::dmat4x3(1.0)};
+  core.move_objects({&door, 1});
+  const ViewRequest closed = core.make_request(0.0, k_size);
+  const ViewRequest on_its_way = core.make_request(0.0, k_size);
+  core.accept(closed, 0.0, set_of({7}), 0.0);
+  EXPECT_FALSE(core.decide(0.0, eyes).may_be_visible(hidden, k_nowhere));
+  core.move_objects({&door, 1});  // where it is already
+  EXPECT_FALSE(core.decide(0.0, eyes).may_be_visible(hidden, k_nowhere));
+
+  door.world_from_object[3][0] = 1.0;
+  core.move_objects({&door, 1});
+  EXPECT_TRUE(core.decide(0.0, eyes).may_be_visible(hidden, k_nowhere));
+  core.accept(on_its_way, 0.0, set_of({7}), 0.0);
+  EXPECT_TRUE(core.decide(0.0, eyes).may_be_visible(hidden, k_nowhere));
+  const ViewRequest open = core.make_request(0.0, k_size);
+  EXPECT_EQ(open.moves, std::vector<ObjectMove>{door});
+  core.accept(open, 0.0, set_of({7}), 0.0);
+  EXPECT_FALSE(core.decide(0.0, eyes).may_be_visible(hidden, k_nowhere));
+}
+
+TEST(CullingCore, KeepsItsNumberingButNoSetWithANewRig) {
+  CullingCore core({}, one_eye());
+  core.add_pose({0.0, pose_at(0.0)});
+  const ViewRequest first = core.make_request(0.0, k_size);
+  const ViewRequest on_its_way = core.make_request(0.0, k_size);
+  core.accept(first, 0.0, set_of({1}), 0.0);
+  EXPECT_THROW(core.set_rig({}), InputError);
+  EXPECT_EQ(core.decide(0.0, eyes_of(pose_at(0.0), core.rig())).fallback, Fallback::none);
+
+  core.set_rig({{glm::dmat4(1.0), clip_from_camera(Perspective{}, 16.0 / 9.0)}});
+  const auto eyes = eyes_of(pose_at(0.0), core.rig());
+  EXPECT_EQ(core.decide(0.0, eyes).fallback, Fallback::no_set);
+  core.accept(on_its_way, 0.0, set_of({1}), 0.0);
+  EXPECT_EQ(core.decide(0.0, eyes).fallback, Fallback::no_set);
+  const ViewRequest next = core.make_request(0.0, k_size);
+  EXPECT_EQ(next.request_seq, on_its_way.request_seq + 1);
+  EXPECT_TRUE(next.reset_filter);
+  EXPECT_EQ(next.eyes, eyes);
+  core.accept(next, 0.0, set_of({2}), 0.0);
+  EXPECT_EQ(core.decide(0.0, eyes).visible, set_of({2}));
 }
 
 TEST(CullingCore, RefusesWhatIsNotFinite) {

@@ -180,8 +180,7 @@ TEST_F(CullingSessionOverLoopback, AsksForAKeyframeWhenADeltasBaseIsMissing) {
 }
 
 TEST_F(CullingSessionOverLoopback, StaysRefusedAndSaysWhy) {
-  for (const RefusalReason reason :
-       {RefusalReason::version_mismatch, RefusalReason::scene_mismatch, RefusalReason::limit}) {
+  for (const RefusalReason reason : {RefusalReason::version_mismatch, RefusalReason::scene_mismatch}) {
     session_.emplace(options_for(daemon_->endpoint()));
     ASSERT_TRUE(daemon_hears<Hello>());
     daemon_->send(Refusal{reason, "because", 2, {}});
@@ -196,6 +195,29 @@ TEST_F(CullingSessionOverLoopback, StaysRefusedAndSaysWhy) {
     EXPECT_EQ(session_->state(), SessionState::refused);
     EXPECT_EQ(session_->wait_until_open(0.01), SessionState::refused);
   }
+}
+
+TEST_F(CullingSessionOverLoopback, TakesAReasonOfANewerDaemonForAnotherVersion) {
+  ASSERT_TRUE(daemon_hears<Hello>());
+  daemon_->send(Refusal{static_cast<RefusalReason>(77), "because", k_protocol_version + 1, {}});
+  ASSERT_TRUE(poll_until([&] { return session_->state() == SessionState::refused; }));
+  EXPECT_EQ(session_->refusal()->reason, RefusalReason::version_mismatch);
+  EXPECT_EQ(session_->refusal()->text, "because");
+}
+
+TEST_F(CullingSessionOverLoopback, AsksAFullDaemonAgainAfterAPause) {
+  ASSERT_TRUE(daemon_hears<Hello>());
+  daemon_->send(Refusal{RefusalReason::limit, "full", k_protocol_version, {}});
+  ASSERT_TRUE(poll_until([&] { return session_->refusal().has_value(); }));
+  EXPECT_EQ(session_->state(), SessionState::connecting);
+  EXPECT_EQ(session_->refusal()->text, "full");
+  while (daemon_->next<Hello>()) continue;  // of before
+  const double refused_s = now_s_;
+  ASSERT_TRUE(daemon_hears<Hello>());
+  EXPECT_GE(now_s_ - refused_s, 0.9);
+  welcome(77);
+  EXPECT_FALSE(session_->refusal());
+  EXPECT_EQ(session_->lost_count(), 0u);
 }
 
 TEST_F(CullingSessionOverLoopback, RefusesADaemonWithAnotherNumberOfObjects) {
