@@ -83,6 +83,7 @@ std::string digits_of(double value) {
 ServiceOptions ServiceOptions::on_virtual_clock() const {
   ServiceOptions options = *this;
   options.control_rate_hz.reset();
+  options.silence_limit_s = 86400.0;
   return options;
 }
 

@@ -73,8 +73,9 @@ struct ServiceOptions {
   std::optional<double> guard_deg;  ///< the daemon sees this much more on every side of the predicted view
 
   [[nodiscard]] bool wanted() const noexcept { return spawn || !connect.empty(); }
+  std::optional<double> silence_limit_s;  ///< how long a spawned daemon keeps a session that says nothing
   /// The same for a replay on a virtual clock, whose rate is its own affair: without control_rate_hz, which
-  /// would make the daemon wait in real time.
+  /// would make the daemon wait in real time, and with no limit to the time that judging one frame may take.
   [[nodiscard]] ServiceOptions on_virtual_clock() const;
   /// `required`: whether the command cannot do without a daemon. Throws InputError naming the option.
   void validate(bool required) const;

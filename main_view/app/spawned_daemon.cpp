@@ -57,6 +57,7 @@ std::vector<std::string> daemon_command(const std::filesystem::path& scene, cons
   if (options.counter) hand_on("--counter", *options.counter);
   if (options.filter) hand_on("--filter", std::to_string(*options.filter));
   if (options.threshold) hand_on("--threshold", digits_of(*options.threshold));
+  if (options.silence_limit_s) hand_on("--silence-limit", digits_of(*options.silence_limit_s));
   if (options.control_rate_hz) hand_on("--control-rate", digits_of(*options.control_rate_hz));
   if (options.preset) hand_on("--preset", *options.preset);
   if (options.control_size) {
