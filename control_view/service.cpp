@@ -125,7 +125,7 @@ void Service::receive(const ServerLink::Incoming& incoming) {
     return;
   }
   if (session != nullptr) session->heard(clock_());
-  std::visit([&](auto&& message) { handle(incoming.peer, std::move(message)); },
+  std::visit([&]<class M>(M&& message) { handle(incoming.peer, std::forward<M>(message)); },
              std::get<Message>(std::move(decoded)));
 }
 

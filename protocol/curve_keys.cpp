@@ -50,7 +50,7 @@ std::string read_key(const toml::table& table, const std::string& file, const ch
     if (!required) return {};
     throw InputError("key file '" + file + "': " + field + " is missing");
   }
-  const std::string key = node->value_or(std::string());
+  std::string key = node->value_or(std::string());
   if (!is_key(key)) {
     throw InputError("key file '" + file + "': " + field + " must be a key of 40 Z85 characters");
   }

@@ -95,13 +95,14 @@ void SceneRenderer::set_view(const Eye& eye, const glm::dvec3& eye_m) const {
   for (const GLuint program : {solid_.get(), mask_.get(), blended_.get()}) {
     glUseProgram(program);
     glUniformMatrix4fv(0, 1, GL_FALSE, glm::value_ptr(clip_from_scene));
-    glUniform3f(ShadingLocations::eye, float(eye_m.x), float(eye_m.y), float(eye_m.z));
-    glUniform3f(ShadingLocations::sun, sun.x, sun.y, sun.z);
-    glUniform1f(ShadingLocations::haze_per_m, haze_per_m_);
+    glUniform3f(ShadingLocations::k_eye, float(eye_m.x), float(eye_m.y), float(eye_m.z));
+    glUniform3f(ShadingLocations::k_sun, sun.x, sun.y, sun.z);
+    glUniform1f(ShadingLocations::k_haze_per_m, haze_per_m_);
     for (std::size_t i = 0; i < lights_.size(); ++i) {
       const auto slot = static_cast<GLint>(i);
-      glUniform4fv(ShadingLocations::light_position + slot, 1, glm::value_ptr(lights_[i].position_and_fade));
-      glUniform4fv(ShadingLocations::light_color + slot, 1, glm::value_ptr(lights_[i].color));
+      glUniform4fv(ShadingLocations::k_light_position + slot, 1,
+                   glm::value_ptr(lights_[i].position_and_fade));
+      glUniform4fv(ShadingLocations::k_light_color + slot, 1, glm::value_ptr(lights_[i].color));
     }
   }
 }
@@ -118,9 +119,9 @@ void SceneRenderer::draw_sky(const Eye& eye) const {
   const glm::vec3 ray_center(world_from_camera * glm::dvec3(clip[2][0] * right, clip[2][1] * up, -1.0));
 
   glUseProgram(sky_.get());
-  glUniform3fv(ShadingLocations::ray_center, 1, glm::value_ptr(ray_center));
-  glUniform3fv(ShadingLocations::ray_right, 1, glm::value_ptr(ray_right));
-  glUniform3fv(ShadingLocations::ray_up, 1, glm::value_ptr(ray_up));
+  glUniform3fv(ShadingLocations::k_ray_center, 1, glm::value_ptr(ray_center));
+  glUniform3fv(ShadingLocations::k_ray_right, 1, glm::value_ptr(ray_right));
+  glUniform3fv(ShadingLocations::k_ray_up, 1, glm::value_ptr(ray_up));
   // Only where nothing was drawn: there the depth is still what it was cleared to.
   glDepthFunc(GL_EQUAL);
   glDepthMask(GL_FALSE);

@@ -16,14 +16,14 @@ inline constexpr int k_point_light_count = 4;
 
 /// Uniform locations that the programs below share.
 struct ShadingLocations {
-  static constexpr int eye = 1;              ///< vec3, scene frame
-  static constexpr int sun = 2;              ///< vec3, unit, towards the sun
-  static constexpr int haze_per_m = 3;       ///< float
-  static constexpr int light_position = 16;  ///< vec4[k_point_light_count]: scene frame; 1 / reach^2 in w
-  static constexpr int light_color = 24;     ///< vec4[k_point_light_count]
-  static constexpr int ray_center = 5;       ///< vec3: view direction of the image's centre (sky only)
-  static constexpr int ray_right = 6;        ///< vec3: what a step of 1 in clip x adds
-  static constexpr int ray_up = 7;           ///< vec3
+  static constexpr int k_eye = 1;              ///< vec3, scene frame
+  static constexpr int k_sun = 2;              ///< vec3, unit, towards the sun
+  static constexpr int k_haze_per_m = 3;       ///< float
+  static constexpr int k_light_position = 16;  ///< vec4[k_point_light_count]: scene frame; 1 / reach^2 in w
+  static constexpr int k_light_color = 24;     ///< vec4[k_point_light_count]
+  static constexpr int k_ray_center = 5;       ///< vec3: view direction of the image's centre (sky only)
+  static constexpr int k_ray_right = 6;        ///< vec3: what a step of 1 in clip x adds
+  static constexpr int k_ray_up = 7;           ///< vec3
 };
 
 [[nodiscard]] std::string shading_vertex_glsl();
