@@ -2,6 +2,7 @@
 
 #include <array>
 #include <chrono>
+#include <csignal>
 #include <cstring>
 #include <string_view>
 #include <thread>
@@ -9,7 +10,6 @@
 
 #include <fcntl.h>
 #include <poll.h>
-#include <signal.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -26,7 +26,7 @@ constexpr std::string_view k_ready = "control_view: listening on ";
 std::filesystem::path daemon_executable() {
   std::error_code error;
   const auto self = std::filesystem::read_symlink("/proc/self/exe", error);
-  const auto beside = self.parent_path() / "control_view";
+  auto beside = self.parent_path() / "control_view";
   if (error || !std::filesystem::exists(beside)) {
     throw MachineError("--spawn: no control_view beside " + self.string() + "; build it or use --connect");
   }
@@ -71,6 +71,7 @@ SpawnedDaemon::SpawnedDaemon(const std::filesystem::path& scene, const ServiceOp
                              double timeout_s) {
   std::vector<std::string> command = daemon_command(scene, options);
   std::vector<char*> arguments;
+  arguments.reserve(command.size() + 1);
   for (std::string& word : command) arguments.push_back(word.data());
   arguments.push_back(nullptr);
 

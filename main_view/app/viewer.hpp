@@ -50,9 +50,9 @@ class Viewer {
   void handle_mouse();
   void move_camera(double dt_s);
   [[nodiscard]] bool pressed(int key);
-  void choose_objects(const Eye& eye, double now_s);
-  void choose_with_service(const Eye& eye, double now_s);
-  void take_answers(double now_s);
+  void choose_objects(const Eye& eye, double time_s);
+  void choose_with_service(const Eye& eye, double time_s);
+  void take_answers(double time_s);
   void draw_picture(const Eye& eye);
   void toggle_freeze();
   void describe_service();
