@@ -18,11 +18,14 @@ using Powers = Eigen::Matrix<double, Eigen::Dynamic, ParameterCount>;
 template <int ParameterCount>
 struct ComponentResiduals {
   using Scalar = double;
+  // Names that TinySolver asks for.
+  // NOLINTNEXTLINE(readability-identifier-naming)
   enum { NUM_RESIDUALS = Eigen::Dynamic, NUM_PARAMETERS = ParameterCount };
 
   const Powers<ParameterCount>& powers;
   const Eigen::VectorXd& samples;
 
+  // NOLINTNEXTLINE(readability-identifier-naming)
   [[nodiscard]] int NumResiduals() const { return static_cast<int>(powers.rows()); }
 
   bool operator()(const double* parameters, double* residuals, double* jacobian) const {
