@@ -22,7 +22,7 @@ RUN ! ldd /usr/local/bin/control_view /usr/local/bin/main_view | grep 'not found
 COPY scenes /usr/local/share/sightline/scenes
 COPY LICENSE /usr/local/share/sightline/
 USER sightline
-EXPOSE 5555
+EXPOSE 5571
 HEALTHCHECK --interval=2s --timeout=5s --start-period=60s --retries=5 \
   CMD ["control_view", "ping", "--connect", "tcp://127.0.0.1:5571"]
 CMD ["control_view", "serve", "--bind", "tcp://0.0.0.0:5571", \
