@@ -49,7 +49,8 @@ Service::Service(ServerLink& link, VisibilityEngine& engine, SceneIdentity scene
 void Service::step(std::chrono::milliseconds timeout) {
   const bool all_read = drain(timeout);
   const double patience = all_read ? 1.0 : k_patience_in_a_flood;
-  counters_.reaped += sessions_.close_silent(clock_() - patience * options_.silence_limit_s);
+  const double now_s = clock_();
+  counters_.reaped += sessions_.close_silent(now_s - patience * options_.silence_limit_s, now_s);
   if (!may_answer_now()) return;
   if (Session* session = sessions_.next_pending()) answer(*session);
 }

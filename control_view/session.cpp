@@ -29,6 +29,12 @@ Session::Session(std::uint64_t id, PeerId peer, std::string client_name, Visibil
   edits_.owner = id;
 }
 
+bool Session::silent(double before_s, double now_s, double grace_s) noexcept {
+  if (last_heard_s_ >= before_s) return false;
+  if (!missed_since_s_) missed_since_s_ = now_s;
+  return now_s - *missed_since_s_ > grace_s;
+}
+
 bool Session::accept(ViewRequest request, double now_s) {
   if (request.request_seq < newest_request_seq_) return true;
   newest_request_seq_ = request.request_seq;

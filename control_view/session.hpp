@@ -34,8 +34,14 @@ class Session {
   [[nodiscard]] VisibleSetFrame answer(VisibilityEngine& engine, const SceneDigest& digest, double now_s);
   void note_encode_time(double encode_s) noexcept { last_encode_s_ = encode_s; }
 
-  void heard(double now_s) noexcept { last_heard_s_ = now_s; }
-  [[nodiscard]] double last_heard_s() const noexcept { return last_heard_s_; }
+  void heard(double now_s) noexcept {
+    last_heard_s_ = now_s;
+    missed_since_s_.reset();
+  }
+  /// Whether nothing was heard since `before_s`, and still not for `grace_s` after that was first found. The
+  /// grace is for words on their way: a daemon that was itself away (a long draw, a suspended machine) finds
+  /// every session silent at once, the living too.
+  [[nodiscard]] bool silent(double before_s, double now_s, double grace_s) noexcept;
   [[nodiscard]] std::uint64_t id() const noexcept { return edits_.owner; }
   [[nodiscard]] const PeerId& peer() const noexcept { return peer_; }
   [[nodiscard]] const std::string& client_name() const noexcept { return client_name_; }
@@ -49,6 +55,7 @@ class Session {
   std::optional<PendingRequest> pending_;
   std::uint64_t newest_request_seq_ = 0;
   double last_heard_s_ = 0.0;
+  std::optional<double> missed_since_s_;  ///< when its silence was first found
   double last_encode_s_ = 0.0;
 };
 

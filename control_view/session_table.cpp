@@ -29,10 +29,11 @@ void SessionTable::close(const Session& session) {
   if (index < turn_) --turn_;
 }
 
-std::size_t SessionTable::close_silent(double before_s) {
+std::size_t SessionTable::close_silent(double before_s, double now_s) {
+  constexpr double grace_s = 0.25;
   std::size_t closed = 0;
   for (std::size_t i = sessions_.size(); i-- > 0;) {
-    if (sessions_[i]->last_heard_s() >= before_s) continue;
+    if (!sessions_[i]->silent(before_s, now_s, grace_s)) continue;
     close(*sessions_[i]);
     ++closed;
   }

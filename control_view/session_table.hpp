@@ -23,8 +23,9 @@ class SessionTable {
   [[nodiscard]] Session* of_peer(const PeerId& peer) noexcept;
   void close(const Session& session);
 
-  /// Closes the sessions not heard of since `before_s`; returns how many.
-  std::size_t close_silent(double before_s);
+  /// Closes the sessions not heard of since `before_s` and for a short grace besides (see Session::silent);
+  /// returns how many.
+  std::size_t close_silent(double before_s, double now_s);
 
   /// The next session that has a request pending, in turn; null when none has.
   [[nodiscard]] Session* next_pending() noexcept;

@@ -361,7 +361,7 @@ TEST(ServiceSessions, AreReapedInSilence) {
   Client lively(daemon);
   silent.open();
   lively.open();
-  for (int second = 0; second < 6; ++second) {
+  for (int second = 0; second < 7; ++second) {
     daemon.now_s += 1.0;
     lively.settle();
   }
@@ -480,6 +480,19 @@ TEST(ServiceUnderAttack, ReadsABoundedAmountBeforeItAnswers) {
   EXPECT_EQ(flood.next_as<Refusal>().reason, RefusalReason::malformed);
   flood.settle();
   EXPECT_EQ(daemon.service.counters().malformed, 100u) << "every frame is read in the end";
+}
+
+TEST(ServiceSessions, OutliveAnAbsenceOfTheDaemonItself) {
+  Daemon daemon;
+  Client client(daemon);
+  client.open();
+  daemon.now_s += 60.0;
+  daemon.service.step(k_slice);  // finds it silent, before its words have come
+  EXPECT_EQ(daemon.service.session_count(), 1u);
+  EXPECT_EQ(client.ask(client.request(1, 2.0)), seen_from(2.0));
+  daemon.now_s += 4.0;
+  daemon.service.step(k_slice);
+  EXPECT_EQ(daemon.service.counters().reaped, 0u) << "what was missed before it spoke no longer counts";
 }
 
 TEST(ServiceUnderAttack, ReapsNobodyWhoseWordsItHasNotRead) {
