@@ -487,11 +487,11 @@ TEST(ServiceSessions, OutliveAnAbsenceOfTheDaemonItself) {
   Client client(daemon);
   client.open();
   daemon.now_s += 60.0;
-  daemon.service.step(k_slice);  // finds it silent, before its words have come
+  daemon.service.step(test::k_slice);  // finds it silent, before its words have come
   EXPECT_EQ(daemon.service.session_count(), 1u);
   EXPECT_EQ(client.ask(client.request(1, 2.0)), seen_from(2.0));
   daemon.now_s += 4.0;
-  daemon.service.step(k_slice);
+  daemon.service.step(test::k_slice);
   EXPECT_EQ(daemon.service.counters().reaped, 0u) << "what was missed before it spoke no longer counts";
 }
 
