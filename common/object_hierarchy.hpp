@@ -12,10 +12,26 @@ namespace sightline {
 
 /// Bounding volume hierarchy over the objects of a scene.
 ///
+/// Walk it yourself through nodes() and objects_of(); or ask for everything in a frustum.
+///
 /// Source: top-down binned surface-area build after Wald, "On fast Construction of SAH-based Bounding Volume
 /// Hierarchies", 2007; refit bottom-up when objects move.
 class ObjectHierarchy {
  public:
+  /// Nodes lie in depth-first order: the root is node 0, a node's left child follows it. Every subtree's objects
+  /// are one run of slots.
+  struct Node {
+    Aabb box;
+    std::uint32_t right = 0;  ///< index of the right child, 0 for a leaf
+    std::uint32_t parent = 0;
+    std::uint32_t first_slot = 0;
+    std::uint32_t end_slot = 0;
+
+    [[nodiscard]] bool is_leaf() const noexcept { return right == 0; }
+  };
+  /// No path from the root to a leaf is longer: a walk needs a stack of this many nodes, and one.
+  static constexpr std::uint32_t k_max_depth = 80;
+
   ObjectHierarchy() = default;
   /// `bounds[i]` is the world box of ObjectId i. Objects with an empty box are never reported.
   explicit ObjectHierarchy(std::span<const Aabb> bounds);
@@ -34,17 +50,14 @@ class ObjectHierarchy {
   [[nodiscard]] std::uint32_t object_count() const noexcept {
     return static_cast<std::uint32_t>(bounds_.size());
   }
+  /// Empty when there are no objects. Boxes change in move, nothing else ever does.
+  [[nodiscard]] std::span<const Node> nodes() const noexcept { return nodes_; }
+  /// The objects below a node, in no order of their own; those whose box is empty among them.
+  [[nodiscard]] std::span<const ObjectId> objects_of(const Node& node) const noexcept {
+    return {order_.data() + node.first_slot, order_.data() + node.end_slot};
+  }
 
  private:
-  /// Nodes lie in depth-first order: a node's left child follows it. Every subtree's objects are one run of
-  /// order_.
-  struct Node {
-    Aabb box;
-    std::uint32_t right = 0;  ///< index of the right child, 0 for a leaf
-    std::uint32_t parent = 0;
-    std::uint32_t first_slot = 0;
-    std::uint32_t end_slot = 0;
-  };
   friend class ObjectHierarchyBuilder;
 
   [[nodiscard]] Aabb union_of_slots(const Node& leaf) const noexcept;

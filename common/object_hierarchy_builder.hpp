@@ -20,6 +20,7 @@ class ObjectHierarchyBuilder {
   static constexpr std::uint32_t k_last_surface_depth = 48;
   /// 32 halvings of at most 2^32 objects below the last surface-area split.
   static constexpr std::uint32_t k_max_depth = k_last_surface_depth + 32;
+  static_assert(k_max_depth == ObjectHierarchy::k_max_depth);
 
   explicit ObjectHierarchyBuilder(ObjectHierarchy& hierarchy) : hierarchy_(hierarchy) {}
   void build();
