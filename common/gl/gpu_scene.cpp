@@ -10,11 +10,14 @@
 namespace sightline::gl {
 namespace {
 
-constexpr std::uint8_t k_double_sided_bit = 1;
-constexpr std::uint8_t k_mirrored_bit = 2;
-constexpr std::uint8_t k_mask_bit = 4;
+constexpr GLuint k_vertex_binding = 0, k_normal_binding = 1, k_uv_binding = 2, k_item_binding = 3,
+                 k_placement_binding = 4;
+constexpr GLuint k_first_placement_location = 5;
 
-constexpr GLuint k_vertex_binding = 0, k_normal_binding = 1, k_uv_binding = 2, k_item_binding = 3;
+std::array<glm::vec3, 4> columns_of(const glm::dmat4& placement) {
+  const glm::mat4 single(placement);
+  return {glm::vec3(single[0]), glm::vec3(single[1]), glm::vec3(single[2]), glm::vec3(single[3])};
+}
 
 struct ItemAttributes {
   std::uint32_t object;
@@ -47,10 +50,14 @@ layout(location = 1) in vec3 in_normal;
 layout(location = 2) in vec2 in_uv;
 layout(location = 3) in uint in_object;
 layout(location = 4) in uint in_material;
-layout(std430, binding = 0) readonly buffer Transforms { mat4 scene_from_object[]; };
+layout(location = 5) in vec3 in_placement[4];
 layout(location = 0) uniform mat4 u_clip_from_scene;
 invariant gl_Position;
-vec4 scene_position() { return scene_from_object[in_object] * vec4(in_position, 1.0); }
+mat4 scene_from_object() {
+  return mat4(vec4(in_placement[0], 0.0), vec4(in_placement[1], 0.0), vec4(in_placement[2], 0.0),
+              vec4(in_placement[3], 1.0));
+}
+vec4 scene_position() { return scene_from_object() * vec4(in_position, 1.0); }
 vec4 clip_position() { return u_clip_from_scene * scene_position(); }
 )";
 
@@ -103,13 +110,11 @@ void GpuScene::upload_vertices(const Scene& scene, bool with_shading) {
 
 void GpuScene::upload_items(const Scene& scene) {
   std::vector<ItemAttributes> attributes;
-  std::vector<glm::mat4> transforms;
-  transforms.reserve(scene.objects.size());
+  std::vector<ItemPlacement> placements;
   first_item_.reserve(scene.objects.size() + 1);
   for (std::uint32_t object = 0; object < scene.object_count(); ++object) {
     first_item_.push_back(static_cast<std::uint32_t>(items_.size()));
     const glm::dmat4& placement = scene.objects[object].scene_from_object;
-    transforms.emplace_back(placement);
     mirrored_.push_back(turns_winding(placement) ? 1 : 0);
     const Mesh& mesh = scene.meshes[scene.objects[object].mesh];
     for (std::uint32_t i = 0; i < mesh.primitive_count; ++i) {
@@ -121,11 +126,12 @@ void GpuScene::upload_items(const Scene& scene) {
                         static_cast<std::uint8_t>((material.double_sided ? k_double_sided_bit : 0) |
                                                   (mask ? k_mask_bit : 0))});
       attributes.push_back({object, primitive.material});
+      placements.push_back(columns_of(placement));
     }
   }
   first_item_.push_back(static_cast<std::uint32_t>(items_.size()));
 
-  transforms_ = uploaded(transforms, GL_DYNAMIC_STORAGE_BIT);
+  placements_ = uploaded(placements, GL_DYNAMIC_STORAGE_BIT);
   item_attributes_ = uploaded(attributes);
   const GLuint array = vertex_array_.get();
   glVertexArrayVertexBuffer(array, k_item_binding, item_attributes_.get(), 0, sizeof(ItemAttributes));
@@ -135,6 +141,15 @@ void GpuScene::upload_items(const Scene& scene) {
     glVertexArrayAttribIFormat(array, location, 1, GL_UNSIGNED_INT,
                                field * static_cast<GLuint>(sizeof(std::uint32_t)));
     glVertexArrayAttribBinding(array, location, k_item_binding);
+    glEnableVertexArrayAttrib(array, location);
+  }
+  glVertexArrayVertexBuffer(array, k_placement_binding, placements_.get(), 0, sizeof(ItemPlacement));
+  glVertexArrayBindingDivisor(array, k_placement_binding, 1);
+  for (GLuint column = 0; column < 4; ++column) {
+    const GLuint location = k_first_placement_location + column;
+    glVertexArrayAttribFormat(array, location, 3, GL_FLOAT, GL_FALSE,
+                              column * static_cast<GLuint>(sizeof(glm::vec3)));
+    glVertexArrayAttribBinding(array, location, k_placement_binding);
     glEnableVertexArrayAttrib(array, location);
   }
   commands_ = make_buffer();
@@ -186,71 +201,12 @@ void GpuScene::upload_textures(const Scene& scene, bool with_shading) {
 void GpuScene::set_transforms(std::span<const ObjectId> ids, std::span<const glm::dmat4> scene_from_object) {
   for (std::size_t i = 0; i < ids.size(); ++i) {
     const std::uint32_t object = index_of(ids[i]);
-    const glm::mat4 placement(scene_from_object[i]);
     mirrored_[object] = turns_winding(scene_from_object[i]) ? 1 : 0;
-    glNamedBufferSubData(transforms_.get(), static_cast<GLintptr>(object * sizeof(glm::mat4)),
-                         sizeof(placement), glm::value_ptr(placement));
-  }
-}
-
-DrawStats GpuScene::draw(Layer layer, std::span<const ObjectId> ids, const PassPrograms& programs) {
-  DrawStats stats;
-  for (GroupCommands& group : groups_) {
-    group.commands.clear();
-    group.texture_runs.clear();
-  }
-  for (const ObjectId id : ids) {
-    const std::uint32_t object = index_of(id);
-    const std::uint8_t mirrored = mirrored_[object] != 0 ? k_mirrored_bit : 0;
-    bool drawn = false;
-    for (std::uint32_t item = first_item_[object]; item < first_item_[object + 1]; ++item) {
-      const DrawItem& what = items_[item];
-      if (what.layer != layer || what.index_count == 0) continue;
-      GroupCommands& group = groups_[what.sides_and_mask | mirrored];
-      if (group.texture_runs.empty() || group.texture_runs.back().second != what.texture) {
-        group.texture_runs.emplace_back(group.commands.size(), what.texture);
-      }
-      group.commands.push_back({what.index_count, 1, what.first_index, 0, item});
-      stats.triangles += what.index_count / 3;
-      drawn = true;
-    }
-    if (drawn) ++stats.objects;
-  }
-
-  glBindVertexArray(vertex_array_.get());
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, transforms_.get());
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, materials_.get());
-  glBindBuffer(GL_DRAW_INDIRECT_BUFFER, commands_.get());
-  for (std::size_t group = 0; group < k_group_count; ++group) submit(group, programs);
-  return stats;
-}
-
-void GpuScene::submit(std::size_t group_index, const PassPrograms& programs) {
-  const GroupCommands& group = groups_[group_index];
-  if (group.commands.empty()) return;
-  if ((group_index & k_double_sided_bit) != 0) {
-    glDisable(GL_CULL_FACE);
-  } else {
-    glEnable(GL_CULL_FACE);
-    glCullFace(GL_BACK);
-  }
-  glFrontFace((group_index & k_mirrored_bit) != 0 ? GL_CW : GL_CCW);
-  const GLuint program = (group_index & k_mask_bit) != 0 ? programs.mask : programs.solid;
-  glUseProgram(program);
-  const GLint textured_location = glGetUniformLocation(program, "u_textured");
-
-  glNamedBufferData(commands_.get(), static_cast<GLsizeiptr>(group.commands.size() * sizeof(DrawCommand)),
-                    group.commands.data(), GL_STREAM_DRAW);
-  for (std::size_t run = 0; run < group.texture_runs.size(); ++run) {
-    const auto [first, texture] = group.texture_runs[run];
-    const std::size_t end =
-        run + 1 < group.texture_runs.size() ? group.texture_runs[run + 1].first : group.commands.size();
-    const bool textured = texture != k_no_texture;
-    glBindTextureUnit(0, textured ? textures_[texture].get() : white_.get());
-    if (textured_location >= 0) glUniform1i(textured_location, textured ? 1 : 0);
-    glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT,
-                                reinterpret_cast<const void*>(first * sizeof(DrawCommand)),
-                                static_cast<GLsizei>(end - first), 0);
+    const std::uint32_t first = first_item_[object];
+    copies_.assign(first_item_[object + 1] - first, columns_of(scene_from_object[i]));
+    if (copies_.empty()) continue;
+    glNamedBufferSubData(placements_.get(), static_cast<GLintptr>(first * sizeof(ItemPlacement)),
+                         static_cast<GLsizeiptr>(copies_.size() * sizeof(ItemPlacement)), copies_.data());
   }
 }
 

@@ -64,8 +64,9 @@ void main() {
 }
 )";
 
-ItemBuffer::ItemBuffer(ImageSize size)
-    : solid_(make_program("item_buffer", vertex_source().c_str(), k_solid_fragment)),
+ItemBuffer::ItemBuffer(ImageSize size, Stencil stencil)
+    : stencil_(stencil),
+      solid_(make_program("item_buffer", vertex_source().c_str(), k_solid_fragment)),
       masked_(make_program("item_buffer_mask", vertex_source().c_str(),
                            (std::string(k_material_glsl) + k_mask_fragment_body).c_str())),
       blended_count_(make_program("blended_count", vertex_source().c_str(), k_blended_count_fragment)),
@@ -84,17 +85,25 @@ void ItemBuffer::resize(ImageSize size) {
   glTextureParameteri(codes_.get(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);
   glTextureParameteri(codes_.get(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
   depth_stencil_ = make_texture(GL_TEXTURE_2D);
-  glTextureStorage2D(depth_stencil_.get(), 1, GL_DEPTH32F_STENCIL8, width, height);
+  const bool with_stencil = stencil_ == Stencil::with;
+  glTextureStorage2D(depth_stencil_.get(), 1, with_stencil ? GL_DEPTH32F_STENCIL8 : GL_DEPTH_COMPONENT32F,
+                     width, height);
   framebuffer_ = make_framebuffer();
   glNamedFramebufferTexture(framebuffer_.get(), GL_COLOR_ATTACHMENT0, codes_.get(), 0);
-  glNamedFramebufferTexture(framebuffer_.get(), GL_DEPTH_STENCIL_ATTACHMENT, depth_stencil_.get(), 0);
+  attach_depth(framebuffer_);
   depth_framebuffer_ = make_framebuffer();
-  glNamedFramebufferTexture(depth_framebuffer_.get(), GL_DEPTH_STENCIL_ATTACHMENT, depth_stencil_.get(), 0);
+  attach_depth(depth_framebuffer_);
   glNamedFramebufferDrawBuffer(depth_framebuffer_.get(), GL_NONE);
   if (glCheckNamedFramebufferStatus(framebuffer_.get(), GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
     throw MachineError("OpenGL: no complete item buffer of " + std::to_string(size.width) + "x" +
-                       std::to_string(size.height) + " (R32UI with DEPTH32F_STENCIL8); use a smaller size");
+                       std::to_string(size.height) + " (R32UI with " +
+                       (with_stencil ? "DEPTH32F_STENCIL8" : "DEPTH_COMPONENT32F") + "); use a smaller size");
   }
+}
+
+void ItemBuffer::attach_depth(const Framebuffer& framebuffer) const {
+  const GLenum point = stencil_ == Stencil::with ? GL_DEPTH_STENCIL_ATTACHMENT : GL_DEPTH_ATTACHMENT;
+  glNamedFramebufferTexture(framebuffer.get(), point, depth_stencil_.get(), 0);
 }
 
 void ItemBuffer::bind(const std::optional<PixelRect>& rect) const {
@@ -127,12 +136,27 @@ DrawStats ItemBuffer::draw(GpuScene& scene, const Eye& eye, std::span<const Obje
   constexpr float farthest = 0.0f;
   glClearNamedFramebufferfv(framebuffer_.get(), GL_DEPTH, 0, &farthest);
 
+  set_transform(scene, eye);
+  return scene.draw(Layer::opaque, ids, {solid_.get(), masked_.get()});
+}
+
+DrawStats ItemBuffer::draw_more(GpuScene& scene, const Eye& eye, std::span<const ObjectId> ids,
+                                const std::optional<PixelRect>& rect) {
+  bind(rect);
+  set_transform(scene, eye);
+  // Backwards with the last of equals winning: among `ids` the first in the one order wins, as it should.
+  glDepthFunc(GL_GEQUAL);
+  const DrawStats stats = scene.draw(Layer::opaque, ids, {solid_.get(), masked_.get()}, DrawOrder::backward);
+  glDepthFunc(GL_GREATER);
+  return stats;
+}
+
+void ItemBuffer::set_transform(const GpuScene& scene, const Eye& eye) const {
   const glm::mat4 clip_from_scene = depth_clip_from_scene(eye, scene.world_origin_m());
   for (const Program* program : {&solid_, &masked_}) {
     glUseProgram(program->get());
     glUniformMatrix4fv(k_clip_from_scene_location, 1, GL_FALSE, glm::value_ptr(clip_from_scene));
   }
-  return scene.draw(Layer::opaque, ids, {solid_.get(), masked_.get()});
 }
 
 DrawStats ItemBuffer::count_blended(GpuScene& scene, const Eye& eye, std::span<const ObjectId> ids,
@@ -184,7 +208,7 @@ void ItemBuffer::read_blended_mask(GpuScene& scene, const Eye& eye, std::span<co
                        static_cast<GLsizei>(size_.height));
     mask_framebuffer_ = make_framebuffer();
     glNamedFramebufferTexture(mask_framebuffer_.get(), GL_COLOR_ATTACHMENT0, mask_.get(), 0);
-    glNamedFramebufferTexture(mask_framebuffer_.get(), GL_DEPTH_STENCIL_ATTACHMENT, depth_stencil_.get(), 0);
+    attach_depth(mask_framebuffer_);
   }
   bind();
   glBindFramebuffer(GL_FRAMEBUFFER, mask_framebuffer_.get());
@@ -209,6 +233,33 @@ void ItemBuffer::read(std::vector<ItemCode>& codes, const std::optional<PixelRec
   glPixelStorei(GL_PACK_ALIGNMENT, 4);
   glReadPixels(static_cast<GLint>(area.x), static_cast<GLint>(area.y), static_cast<GLsizei>(area.size.width),
                static_cast<GLsizei>(area.size.height), GL_RED_INTEGER, GL_UNSIGNED_INT, codes.data());
+}
+
+void ItemBuffer::read_depth(std::vector<float>& depth, const std::optional<PixelRect>& rect) {
+  const PixelRect area = rect.value_or(PixelRect{0, 0, size_});
+  depth.resize(area.size.pixel_count());
+  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.get());
+  glPixelStorei(GL_PACK_ALIGNMENT, 4);
+  const auto read = [&area](GLenum format, GLenum type, void* out) {
+    glReadPixels(static_cast<GLint>(area.x), static_cast<GLint>(area.y),
+                 static_cast<GLsizei>(area.size.width), static_cast<GLsizei>(area.size.height), format, type,
+                 out);
+  };
+  if (stencil_ == Stencil::without) {
+    read(GL_DEPTH_COMPONENT, GL_FLOAT, depth.data());
+    return;
+  }
+  // As it lies in memory, and taken apart here: the driver's own conversion takes four times as long.
+  read_back_.resize(depth.size());
+  read(GL_DEPTH_STENCIL, GL_FLOAT_32_UNSIGNED_INT_24_8_REV, read_back_.data());
+  for (std::size_t i = 0; i < depth.size(); ++i) depth[i] = read_back_[i].depth;
+}
+
+void ItemBuffer::write(std::span<const ItemCode> codes, const PixelRect& rect) {
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+  glTextureSubImage2D(codes_.get(), 0, static_cast<GLint>(rect.x), static_cast<GLint>(rect.y),
+                      static_cast<GLsizei>(rect.size.width), static_cast<GLsizei>(rect.size.height),
+                      GL_RED_INTEGER, GL_UNSIGNED_INT, codes.data());
 }
 
 }  // namespace sightline::gl

@@ -32,7 +32,7 @@ class CountAccumulator {
 /// Adds the histogram of an item buffer. Background is not counted; every other code must be at most the
 /// object count. Works on runs of equal codes: neighbouring pixels mostly show the same object, so what is
 /// left per pixel is one comparison with its neighbour, 16 at a time where the machine has AVX-512, 8 with
-/// AVX2.
+/// AVX2. Of every 64 pixels those that are mostly noise are added one by one instead.
 void add_histogram(std::span<const ItemCode> codes, CountAccumulator& sum);
 
 /// The same by each way this build has, for tests and benchmarks. `plain` looks at one pixel at a time.

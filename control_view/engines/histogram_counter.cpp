@@ -4,14 +4,6 @@
 
 namespace sightline {
 
-gl::DrawStats PixelCounter::add_blended(const View& view, std::span<const ObjectId> ids,
-                                        CountAccumulator& sum) {
-  pixels_.assign(ids.size(), 0);
-  const gl::DrawStats stats = view.buffer.count_blended(view.scene, view.eye, ids, pixels_, view.rect);
-  for (std::size_t i = 0; i < ids.size(); ++i) sum.add(ids[i], pixels_[i]);
-  return stats;
-}
-
 namespace {
 
 /// Reads the item buffer back and counts in software.

@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "common/gl/item_buffer.hpp"
@@ -33,6 +34,9 @@ class PixelCounter {
   std::vector<std::uint32_t> pixels_;
 };
 
+/// By name: histogram, queries or compute. Throws InputError for any other.
+[[nodiscard]] std::unique_ptr<PixelCounter> make_pixel_counter(const std::string& name,
+                                                               std::uint32_t object_count);
 [[nodiscard]] std::unique_ptr<PixelCounter> make_histogram_counter();
 [[nodiscard]] std::unique_ptr<PixelCounter> make_query_counter();
 [[nodiscard]] std::unique_ptr<PixelCounter> make_compute_counter(std::uint32_t object_count);

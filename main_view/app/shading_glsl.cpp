@@ -17,7 +17,7 @@ void main() {
   // the scene's origin is.
   v_from_eye = scene_position().xyz - u_eye;
   // The cofactor matrix carries normals through any linear map; its sign repairs mirrored ones.
-  mat3 m = mat3(scene_from_object[in_object]);
+  mat3 m = mat3(scene_from_object());
   mat3 cofactors = mat3(cross(m[1], m[2]), cross(m[2], m[0]), cross(m[0], m[1]));
   v_normal = cofactors * in_normal * sign(determinant(m));
   v_uv = in_uv;

@@ -1,6 +1,7 @@
 // Counting the codes of a real item buffer against merely reading it.
 
 #include <numeric>
+#include <random>
 
 #include <benchmark/benchmark.h>
 
@@ -60,6 +61,33 @@ void histogram(benchmark::State& state) {
   state.SetBytesProcessed(state.iterations() * std::int64_t(codes.size() * sizeof(ItemCode)));
 }
 BENCHMARK(histogram)->DenseRange(0, 3);
+
+/// Random codes in runs of a mean length, from noise to walls.
+void histogram_of_runs(benchmark::State& state) {
+  const HistogramKernel& kernel = histogram_kernels()[static_cast<std::size_t>(state.range(0))];
+  const auto pixels = static_cast<std::size_t>(state.range(1));
+  const auto mean_run = static_cast<double>(state.range(2));
+  state.SetLabel(std::string(kernel.name));
+  if (!kernel.supported) {
+    state.SkipWithError("not supported by this machine");
+    return;
+  }
+  std::mt19937 random(1);
+  std::uniform_int_distribution<ItemCode> any_code(0, 2000);
+  std::geometric_distribution<std::size_t> run(1.0 / mean_run);
+  std::vector<ItemCode> codes;
+  while (codes.size() < pixels) codes.insert(codes.end(), 1 + run(random), any_code(random));
+  codes.resize(pixels);
+  CountAccumulator sum(2001);
+  PixelCounts counts;
+  for (auto _ : state) {
+    kernel.add(codes, sum);
+    sum.take(counts);
+    benchmark::DoNotOptimize(counts.pixels.data());
+  }
+  state.SetBytesProcessed(state.iterations() * std::int64_t(codes.size() * sizeof(ItemCode)));
+}
+BENCHMARK(histogram_of_runs)->ArgsProduct({{0, 2, 3}, {128 * 96, 512 * 384, 4096 * 4096}, {1, 2, 4, 20}});
 
 }  // namespace
 }  // namespace sightline

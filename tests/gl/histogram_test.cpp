@@ -54,6 +54,20 @@ TEST_P(HistogramKernels, AgreeWithAMapOnRunsOfEveryLength) {
   }
 }
 
+TEST_P(HistogramKernels, AgreeWithAMapWhereNoiseAndRunsMeet) {
+  const HistogramKernel& kernel = histogram_kernels()[GetParam()];
+  if (!kernel.supported) GTEST_SKIP() << kernel.name << " is not supported by this machine";
+  std::mt19937 random(8);
+  for (int image = 0; image < 40; ++image) {
+    std::vector<ItemCode> codes;
+    for (int stretch = 0; stretch < 30; ++stretch) {
+      const auto part = random_image(random, 1 + random() % 200, stretch % 2 == 0 ? 1.0 : 40.0);
+      codes.insert(codes.end(), part.begin(), part.end());
+    }
+    EXPECT_EQ(counted(kernel, codes), counted_by_map(codes)) << kernel.name << ", image " << image;
+  }
+}
+
 TEST_P(HistogramKernels, CountNothingInABackgroundImage) {
   const HistogramKernel& kernel = histogram_kernels()[GetParam()];
   if (!kernel.supported) GTEST_SKIP() << kernel.name << " is not supported by this machine";
