@@ -77,6 +77,7 @@ struct EngineOptions {
   std::string engine = "item_buffer";
   std::string counter = "histogram";
   std::string context = "osmesa";  ///< osmesa, egl or glfw
+  std::uint32_t threads = 0;       ///< engines on the CPU: worker threads, 0 for one a core
 };
 
 /// An engine this build has.

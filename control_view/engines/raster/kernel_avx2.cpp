@@ -1,0 +1,2 @@
+#define SIGHTLINE_LANES avx2
+#include "control_view/engines/raster/draw_region.hpp"

@@ -1,0 +1,2 @@
+#define SIGHTLINE_LANES sse41
+#include "control_view/engines/raster/draw_region.hpp"

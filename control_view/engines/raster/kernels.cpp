@@ -1,0 +1,26 @@
+#include <array>
+
+#include "control_view/engines/raster/kernel.hpp"
+
+namespace sightline::raster {
+
+namespace {
+
+bool has_avx512() {
+  return __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512bw") != 0 &&
+         __builtin_cpu_supports("avx512dq") != 0 && __builtin_cpu_supports("avx512vl") != 0;
+}
+
+}  // namespace
+
+std::span<const RasterKernel> raster_kernels() {
+  static const std::array<RasterKernel, 4> k_kernels{{
+      {"avx512", has_avx512(), avx512::draw_region},
+      {"avx2", __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("fma") != 0, avx2::draw_region},
+      {"sse41", __builtin_cpu_supports("sse4.1") != 0, sse41::draw_region},
+      {"plain", true, plain::draw_region},
+  }};
+  return k_kernels;
+}
+
+}  // namespace sightline::raster
