@@ -6,6 +6,7 @@ find_package(assimp REQUIRED)
 find_package(OSMesa REQUIRED)          # cmake/FindOSMesa.cmake
 find_package(OpenGL REQUIRED COMPONENTS EGL)
 find_package(glfw3 REQUIRED)
+find_package(embree 3 REQUIRED CONFIG)  # brings TBB
 find_package(Stb REQUIRED)             # cmake/FindStb.cmake
 find_package(ImGui REQUIRED)           # cmake/FindImGui.cmake
 find_package(FlatBuffers REQUIRED CONFIG)

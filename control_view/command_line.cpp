@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 
 #include "common/error.hpp"
+#include "control_view/bench_views.hpp"
 #include "control_view/config.hpp"
 #include "control_view/version.hpp"
 
@@ -52,6 +53,7 @@ struct ServeArguments {
 struct BenchArguments {
   BenchOptions options;
   std::string size = "512x384";
+  std::string views = "single";
 
   void declare(CLI::App& app) {
     app.add_option("--scene", options.scene, "scene file")->required();
@@ -62,7 +64,18 @@ struct BenchArguments {
     app.add_option("--counter", options.counter, "counter of the engines given without one");
     app.add_option("--context", options.context, "osmesa, egl or glfw");
     app.add_option("--rate", options.rate_hz, "views a second of the path")->check(CLI::Range(0.001, 1e6));
+    app.add_option("--start", options.start_s, "begin so many seconds into the path")
+        ->check(CLI::Range(0.0, 1e9));
+    app.add_option("--step", options.step, "every N-th frame of the path")->check(CLI::Range(1u, 1000000u));
     app.add_option("--frames", options.frames, "the first N views only");
+    app.add_option("--lead-in", options.lead_in_s,
+                   "seconds: an unmeasured view so much earlier before each, as when a camera moves on")
+        ->check(CLI::Range(0.0, 1e6));
+    app.add_option("--views", views, "of each pose: single, stereo, around or region");
+    app.add_option("--threads", options.threads,
+                   "threads of an engine that draws on the CPU, 0 for one a core")
+        ->check(CLI::Range(0u, k_max_engine_threads));
+    app.add_flag("!--no-oracle", options.oracle, "do not time drawing just the visible objects");
   }
 
   [[nodiscard]] BenchOptions command(const std::vector<std::string>& arguments) {
@@ -72,6 +85,7 @@ struct BenchArguments {
                        ", not '" + size + "'");
     }
     options.size = *parsed;
+    options.views = parse_bench_views(views);
     options.command_line = arguments;
     return options;
   }

@@ -41,7 +41,7 @@ using Kind = OptionField::Kind;
 using Options = DaemonOptions;
 using Text = const std::string&;
 
-constexpr std::array<OptionField, 14> k_fields{{
+constexpr std::array<OptionField, 15> k_fields{{
     {"bind", Kind::text, "endpoint, tcp://HOST:PORT (* for any free port) or ipc://PATH",
      [](Options& o, Text t) { o.bind = not_empty(t, "a tcp:// or ipc:// endpoint"); }},
     {"scene", Kind::text, "scene file", [](Options& o, Text t) { o.scene = not_empty(t, "a scene file"); }},
@@ -51,10 +51,14 @@ constexpr std::array<OptionField, 14> k_fields{{
        if (!size) must_be("WxH with sides from 1 to " + std::to_string(k_max_image_side), t);
        o.size = *size;
      }},
-    {"engine", Kind::text, "visibility engine, see `control_view engines`",
+    {"engine", Kind::text, "visibility engine: auto, or one of `control_view engines`",
      [](Options& o, Text t) { o.engine.engine = not_empty(t, "an engine"); }},
     {"counter", Kind::text, "how the engine counts pixels",
      [](Options& o, Text t) { o.engine.counter = not_empty(t, "a counter"); }},
+    {"threads", Kind::integer, "threads of an engine that draws on the CPU, 0 for one a core",
+     [](Options& o, Text t) {
+       o.engine.threads = parse_number<std::uint32_t>(t, 0, k_max_engine_threads, "a number from 0 to 1024");
+     }},
     {"filter", Kind::integer, "answers the low-pass filter averages, 1 for none",
      [](Options& o, Text t) {
        o.filter = parse_number<std::uint32_t>(t, 1, LowPassFilter::k_max_length, "a number from 1 to 1024");

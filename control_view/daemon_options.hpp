@@ -10,16 +10,19 @@
 
 namespace sightline {
 
+/// Most threads an engine can be told to use.
+inline constexpr std::uint32_t k_max_engine_threads = 1024;
+
 /// Everything `control_view serve` can be told.
 struct DaemonOptions {
   std::string bind = "tcp://127.0.0.1:5571";
   std::string scene;
   std::string preset = "default";  ///< what the settings began as, for reports
   ImageSize size{512, 384};
-  EngineOptions engine;
-  std::uint32_t filter = 8;  ///< answers the low-pass filter averages
-  double threshold = 0.0;    ///< pixels of the control image, mean
-  bool refine = true;        ///< sweep the main image while the camera stands still
+  EngineOptions engine{.engine = "auto", .counter = ""};  ///< an empty counter is the engine's first
+  std::uint32_t filter = 8;                               ///< answers the low-pass filter averages
+  double threshold = 0.0;                                 ///< pixels of the control image, mean
+  bool refine = true;  ///< sweep the main image while the camera stands still
   std::uint32_t max_sessions = 16;
   double control_rate_hz = 0.0;  ///< answers a second at most, 0: no limit
   double silence_limit_s = 5.0;

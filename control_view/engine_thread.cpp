@@ -6,10 +6,15 @@
 
 namespace sightline {
 
-EngineThread::EngineThread(const Scene& scene, const EngineOptions& options)
-    : thread_([this] { serve_calls(); }) {
+EngineThread::EngineThread(const Make& make) : thread_([this] { serve_calls(); }) {
   try {
-    run([&] { engine_ = make_engine(scene, options); });
+    run([&] {
+      instructions_ = std::make_unique<InstructionCounter>();
+      const Clock clock = steady_clock();
+      const double began_s = clock();
+      engine_ = make();
+      build_time_s_ = clock() - began_s;
+    });
   } catch (...) {
     end();
     throw;
@@ -33,9 +38,14 @@ EngineThread::TimedStats EngineThread::count(const ViewQuery& query, PixelCounts
   TimedStats timed;
   run([&] {
     const Clock clock = steady_clock();
+    const auto instructions_before = instructions_->read();
     const double began_s = clock();
     timed.stats = engine_->count(query, counts);
     timed.time_s = clock() - began_s;
+    const auto instructions_after = instructions_->read();
+    if (instructions_before && instructions_after) {
+      timed.instructions = *instructions_after - *instructions_before;
+    }
   });
   return timed;
 }

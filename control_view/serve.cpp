@@ -14,7 +14,7 @@
 
 #include "common/error.hpp"
 #include "common/scene/load_scene.hpp"
-#include "control_view/find_engine.hpp"
+#include "control_view/choose_engine.hpp"
 #include "control_view/service.hpp"
 #include "control_view/stop_signal.hpp"
 #include "control_view/write_file.hpp"
@@ -38,11 +38,11 @@ LinkOptions link_options(const DaemonOptions& options) {
   return link;
 }
 
-ServiceOptions service_options(const DaemonOptions& options) {
+ServiceOptions service_options(const DaemonOptions& options, const EngineOptions& engine) {
   ServiceOptions service;
   service.pipeline = {options.size, options.filter, options.threshold, options.refine};
-  service.engine_name = options.engine.engine;
-  service.counter_name = options.engine.counter;
+  service.engine_name = engine.engine;
+  service.counter_name = engine.counter;
   service.preset_name = options.preset;
   service.max_sessions = options.max_sessions;
   service.silence_limit_s = options.silence_limit_s;
@@ -52,7 +52,7 @@ ServiceOptions service_options(const DaemonOptions& options) {
 
 struct Served {
   SceneIdentity scene;
-  std::unique_ptr<VisibilityEngine> engine;
+  ChosenEngine chosen;
 };
 
 /// Loads the scene and hands it to the engine. The arrays die here: from now on the geometry is the engine's.
@@ -61,7 +61,7 @@ Served make_served(const DaemonOptions& options) {
   {
     const Scene scene = load_scene(options.scene, {.shading = false});
     served.scene = {scene.digest, scene.object_count()};
-    served.engine = make_engine(scene, options.engine);
+    served.chosen = choose_engine(scene, options.engine, options.size, steady_clock());
   }
   malloc_trim(0);
   return served;
@@ -100,13 +100,15 @@ struct SocketFile {
 
 /// Runs the service until a signal.
 void serve_on(ServerLink& link, Served& served, const DaemonOptions& options, const StopSignal& stop) {
-  Service service(link, *served.engine, served.scene, service_options(options), steady_clock());
+  Service service(link, *served.chosen.engine, served.scene, service_options(options, served.chosen.options),
+                  steady_clock());
   const std::string endpoint = link.bound_endpoint();
   const Announcement announcement(options.announce, endpoint);
   std::printf("control_view: listening on %s\n", endpoint.c_str());
   std::fflush(stdout);
   spdlog::info("serving {} ({} objects, digest {})", options.scene, served.scene.object_count,
                to_hex(served.scene.digest));
+  spdlog::info("{}", served.chosen.why);
 
   while (!stop.requested()) service.step(k_longest_wait);
 
@@ -125,7 +127,7 @@ void serve(const DaemonOptions& options) {
   log_to_stderr(options.log);
   if (options.scene.empty())
     throw InputError("no scene given: use --scene FILE or `scene` in the config file");
-  (void)find_engine(options.engine);
+  (void)resolved(options.engine);
 
   LinkOptions settings = link_options(options);
 

@@ -116,8 +116,11 @@ void require_settings(const ServiceOptions& options, const Welcome& daemon) {
   const auto compare_number = [&](const char* option, std::optional<double> wanted, double is) {
     if (wanted && *wanted != is) differs(option, digits_of(is), digits_of(*wanted));
   };
-  // A daemon may add to the name, behind a slash, how its engine works.
-  compare_name("--engine", options.engine, daemon.engine.substr(0, daemon.engine.find('/')));
+  // `auto` takes whatever the daemon chose. A daemon may add to the name, behind a slash, how its engine
+  // works.
+  if (options.engine != "auto") {
+    compare_name("--engine", options.engine, daemon.engine.substr(0, daemon.engine.find('/')));
+  }
   compare_name("--counter", options.counter, daemon.counter);
   compare_name("--preset", options.preset, daemon.preset);
   compare_number("--threshold", options.threshold, daemon.threshold);

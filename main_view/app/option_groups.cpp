@@ -44,7 +44,7 @@ void add_service_options(CLI::App& command, ServiceOptions& options) {
   add("--connect", options.connect, "Endpoint of a running control_view, such as tcp://127.0.0.1:5571");
   command.add_flag("--spawn", options.spawn, "Start a control_view for the length of the run")->group(group);
   add("--keys", options.key_file, "CURVE keys of this client, TOML");
-  add("--engine", options.engine, "Visibility engine; control_view engines lists them");
+  add("--engine", options.engine, "Visibility engine: auto, or one that control_view engines lists");
   add("--counter", options.counter, "Pixel counter: histogram, queries or compute");
   add("--filter", options.filter, "Frames of the low-pass filter");
   add("--threshold", options.threshold, "Mean pixels an object must exceed to count as visible");

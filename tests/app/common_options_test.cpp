@@ -80,6 +80,8 @@ TEST(ServiceOptions, DemandsItsSettingsOfARunningDaemon) {
   service.filter.reset();
   service.engine = "other";
   EXPECT_NE(refusal([&] { require_settings(service, daemon); }).find("--engine"), std::string::npos);
+  service.engine = "auto";
+  EXPECT_EQ(refusal([&] { require_settings(service, daemon); }), "") << "any engine is what auto asks for";
   service.engine.reset();
   service.control_size = ImageSize{1024, 768};
   EXPECT_NE(refusal([&] { require_settings(service, daemon); }).find("--control-size"), std::string::npos);

@@ -115,6 +115,8 @@ TEST(ControlViewCli, RefusesBadInputWithOneLineAndCode2) {
   const std::string scene = folder.write("x.glb", "").string();
   expect_refusal({"--scene", scene, "--engine", "magic"}, 2, "magic");
   expect_refusal({"--scene", scene, "--counter", "abacus"}, 2, "abacus");
+  expect_refusal({"--scene", scene, "--engine", "raster", "--counter", "queries"}, 2, "raster");
+  expect_refusal({"--scene", scene, "--threads", "-1"}, 2, "--threads");
   expect_refusal({"--scene", scene, "--size", "0x0"}, 2, "--size");
   expect_refusal({"--scene", scene, "--size", "1000000x1000000"}, 2, "--size");
   expect_refusal({"--scene", triangle_scene(folder), "--bind", "carrier-pigeon"}, 2, "carrier-pigeon");
@@ -134,7 +136,9 @@ TEST(ControlViewCli, RefusesAnEndpointInUseWithCode3) {
 TEST(ControlViewCli, ListsItsEngines) {
   Process process({"engines"});
   EXPECT_EQ(process.wait(), 0);
-  EXPECT_THAT(process.out(), HasSubstr("item_buffer histogram queries compute\n"));
+  EXPECT_THAT(process.out(), AllOf(HasSubstr("item_buffer histogram queries compute\n"),
+                                   HasSubstr("item_buffer_all histogram queries compute\n"),
+                                   HasSubstr("raster\n"), HasSubstr("raycast\n")));
 }
 
 TEST(ControlViewCli, ServesPingsAndStopsOnASignal) {
@@ -200,9 +204,37 @@ TEST(ControlViewCli, BenchWritesItsReport) {
   const std::string report = read_text(json);
   for (const char* field :
        {"\"engines\"", "\"frame_ms\"", "\"p99\"", "\"stages_ms\"", "\"drawn_objects\": 1.0",
-        "\"reported\": 1.0", "\"missed\": 0.0", "\"kept\": 0.0", "\"queries\""}) {
+        "\"reported\": 1.0", "\"missed\": 0.0", "\"kept\": 0.0", "\"queries\"", "\"load_ms\"", "\"build_ms\"",
+        "\"peak_memory_mb\"", "\"instructions\"", "\"oracle\": {", "\"differing_pixels_share\": 0.0"}) {
     EXPECT_THAT(report, HasSubstr(field));
   }
+}
+
+TEST(ControlViewCli, BenchLooksThroughSeveralEyesWithEveryEngine) {
+  const ScratchFolder folder;
+  const auto path = folder.write("path.csv", "t,px,py,pz,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n1,0,0,0.5,1,0,0,0\n");
+  for (const char* views : {"stereo", "around", "region"}) {
+    const std::string json = folder.file("report.json").string();
+    Process process({"bench", "--scene", triangle_scene(folder), "--path", path.string(), "--size", "64x48",
+                     "--step", "20", "--lead-in", "0.03", "--threads", "2", "--views", views, "--json",
+                     json});
+    ASSERT_EQ(process.wait(), 0) << process.err();
+    const std::string report = read_text(json);
+    EXPECT_THAT(report,
+                AllOf(HasSubstr("\"raster\""), HasSubstr("\"raycast\""), HasSubstr("\"item_buffer_all\""),
+                      HasSubstr(std::string("\"views\": \"") + views), HasSubstr("\"frames\": 4"),
+                      HasSubstr("\"oracle\": null")));
+    EXPECT_THAT(report, ::testing::Not(HasSubstr("\"reported\": 0.0")));
+  }
+}
+
+TEST(ControlViewCli, SaysWhichEngineItChose) {
+  const ScratchFolder folder;
+  Process daemon({"--scene", triangle_scene(folder), "--bind", "tcp://127.0.0.1:*"});
+  ASSERT_NE(daemon.endpoint(), "") << daemon.err();
+  daemon.signal(SIGTERM);
+  EXPECT_EQ(daemon.wait(5.0), 0);
+  EXPECT_THAT(daemon.err(), AllOf(HasSubstr("engine raster chosen"), HasSubstr("ms a view")));
 }
 
 TEST(ControlViewCli, BenchRefusesBadInput) {
@@ -215,6 +247,11 @@ TEST(ControlViewCli, BenchRefusesBadInput) {
                  "/nowhere/r.json");
   expect_refusal({"bench", "--scene", scene, "--path", path, "--json", json, "--engine", "magic"}, 2,
                  "magic");
+  expect_refusal({"bench", "--scene", scene, "--path", path, "--json", json, "--engine", "auto"}, 2, "auto");
+  expect_refusal({"bench", "--scene", scene, "--path", path, "--json", json, "--engine", "raster:queries"}, 2,
+                 "raster");
+  expect_refusal({"bench", "--scene", scene, "--path", path, "--json", json, "--start", "5"}, 2, "--start");
+  expect_refusal({"bench", "--scene", scene, "--path", path, "--json", json, "--views", "up"}, 2, "--views");
   for (const char* time : {"-300", "1e15"}) {
     const std::string header = "t,px,py,pz,qw,qx,qy,qz\n";
     const auto odd = folder.write("odd.csv", header + time + ",0,0,0,1,0,0,0\n").string();

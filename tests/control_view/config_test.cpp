@@ -46,6 +46,7 @@ scene = "city.glb"
 size = "640x480"
 engine = "item_buffer"
 counter = "queries"
+threads = 3
 filter = 4
 threshold = 2.5
 context = "egl"
@@ -61,7 +62,9 @@ log = "warn"
   EXPECT_EQ(options.bind, "ipc:///tmp/x");
   EXPECT_EQ(options.scene, folder.file("city.glb")) << "relative to the file's own folder";
   EXPECT_EQ(options.size, (ImageSize{640, 480}));
+  EXPECT_EQ(options.engine.engine, "item_buffer");
   EXPECT_EQ(options.engine.counter, "queries");
+  EXPECT_EQ(options.engine.threads, 3u);
   EXPECT_EQ(options.engine.context, "egl");
   EXPECT_EQ(options.filter, 4u);
   EXPECT_EQ(options.threshold, 2.5);
@@ -81,6 +84,9 @@ TEST(Config, NamesTheFileAndTheKeyOfWhatItRefuses) {
       {"filter = 0", "filter must be"},
       {"filter = 100000", "filter must be"},
       {"filter = -1", "filter must be"},
+      {"threads = -1", "threads must be"},
+      {"threads = 1e9", "threads must be an integer"},
+      {"threads = 100000", "threads must be"},
       {"threshold = -0.5", "threshold must be"},
       {"threshold = nan", "threshold must be"},
       {"threshold = true", "threshold must be a number"},
@@ -128,8 +134,9 @@ TEST(CommandLine, WinsOverTheConfigFileAndThatOverThePreset) {
 TEST(CommandLine, HasThePapersDefaults) {
   const DaemonOptions options = serve_options({});
   EXPECT_EQ(options.size, (ImageSize{512, 384}));
-  EXPECT_EQ(options.engine.engine, "item_buffer");
-  EXPECT_EQ(options.engine.counter, "histogram");
+  EXPECT_EQ(options.engine.engine, "auto");
+  EXPECT_EQ(options.engine.counter, "") << "each engine's first";
+  EXPECT_EQ(options.engine.threads, 0u) << "one a core";
   EXPECT_EQ(options.engine.context, "osmesa");
   EXPECT_EQ(options.filter, 8u);
   EXPECT_EQ(options.threshold, 0.0);
