@@ -18,8 +18,8 @@ namespace sightline {
 /// Hierarchies", 2007; refit bottom-up when objects move.
 class ObjectHierarchy {
  public:
-  /// Nodes lie in depth-first order: the root is node 0, a node's left child follows it. Every subtree's objects
-  /// are one run of slots.
+  /// Nodes lie in depth-first order: the root is node 0, a node's left child follows it. Every subtree's
+  /// objects are one run of slots.
   struct Node {
     Aabb box;
     std::uint32_t right = 0;  ///< index of the right child, 0 for a leaf
