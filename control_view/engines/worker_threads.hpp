@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <cstdint>
 #include <functional>
@@ -31,9 +32,9 @@ class WorkerThreads {
   std::mutex mutex_;
   std::condition_variable begins_, done_;
   const std::function<void(std::uint32_t)>* work_ = nullptr;
-  std::uint64_t round_ = 0;
-  std::uint32_t at_work_ = 0;
-  bool ends_ = false;
+  std::atomic<std::uint64_t> round_ = 0;
+  std::atomic<std::uint32_t> at_work_ = 0;
+  std::atomic<bool> ends_ = false;
   std::vector<std::thread> threads_;
 };
 

@@ -20,6 +20,7 @@ bool is_power_of_two(int length) {
 Taps taps_at(float coordinate, int length, bool repeat) {
   const auto length_f = static_cast<float>(length);
   Taps taps;
+  if (!std::isfinite(coordinate)) return taps;  // a sliver without area in floats
   if (!repeat) {
     const float texel = std::max(std::min(coordinate * length_f, length_f) - 0.5f, 0.0f);
     const float below = std::floor(texel);

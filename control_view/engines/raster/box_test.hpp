@@ -1,6 +1,8 @@
 // Included by the kernels only: SIGHTLINE_LANES names the namespace of their instruction set.
 #pragma once
 
+#include <cmath>
+
 #include "control_view/engines/raster/target.hpp"
 
 namespace sightline::raster::SIGHTLINE_LANES {
@@ -27,10 +29,12 @@ struct BoxView {
 /// a box that reaches the plane of the eye may show anywhere.
 inline ScreenBox screen_box_of(const Aabb& box, const BoxView& view, const Target& target) {
   constexpr int k_corners = 8;
-  constexpr float rounding = 4e-6f;
-  // A sliver's depth, extrapolated to pixel centres beside it, may come out nearer than its nearest corner.
-  // In the scenes we know by 1.2e-4 of it at most.
-  constexpr float sliver_depth = 1e-3f;
+  constexpr float k_rounding = 4e-6f;
+  // A pixel centre may lie a few hundredths of a pixel outside the triangle that snapping gave it to, and its
+  // depth is extrapolated there: for a surface seen edge-on by any part of the box's own range of depth. So
+  // allow as much again as the box is deep, and 1e-3 of the depth (found: 1.2e-4 at most). Only a sliver
+  // thinner than a sub-pixel goes farther.
+  constexpr float k_sliver_depth = 1e-3f;
   const float low[3] = {box.min.x, box.min.y, box.min.z};
   const float high[3] = {box.max.x, box.max.y, box.max.z};
   float error[4];
@@ -40,20 +44,20 @@ inline ScreenBox screen_box_of(const Aabb& box, const BoxView& view, const Targe
       const float a = __builtin_fabsf(low[axis]), b = __builtin_fabsf(high[axis]);
       size += view.magnitude[axis][row] * (a > b ? a : b);
     }
-    error[row] = rounding * size;
+    error[row] = k_rounding * size;
   }
 
   const Floats error_x = all(error[0]), error_y = all(error[1]), error_z = all(error[2]),
                error_w = all(error[3]);
   const Floats largest_error = max(max(error_x, error_y), error_z) + error_w;
-  constexpr unsigned every_lane = (1u << k_lanes) - 1u;
+  constexpr unsigned k_every_lane = (1u << k_lanes) - 1u;
   const Floats farthest_out = all(HUGE_VALF);
   Floats low_x = farthest_out, low_y = farthest_out, negative_high_x = farthest_out,
          negative_high_y = farthest_out;
-  Floats negative_nearest = farthest_out;
-  unsigned outside[6] = {every_lane, every_lane, every_lane, every_lane, every_lane, every_lane};
-  unsigned in_front = every_lane;
-  unsigned well_inside = every_lane;
+  Floats negative_nearest = farthest_out, farthest = farthest_out;
+  unsigned outside[6] = {k_every_lane, k_every_lane, k_every_lane, k_every_lane, k_every_lane, k_every_lane};
+  unsigned in_front = k_every_lane;
+  unsigned well_inside = k_every_lane;
   const Floats zero = all(0.0f);
   // Lanes beyond the eighth corner repeat the first ones.
   for (int first = 0; first < k_corners; first += k_lanes) {
@@ -83,19 +87,21 @@ inline ScreenBox screen_box_of(const Aabb& box, const BoxView& view, const Targe
                  z = clip[2] * exact_one_over_w;
     const Floats slack_x = (error_x + error_w * magnitude(x)) * one_over_w;
     const Floats slack_y = (error_y + error_w * magnitude(y)) * one_over_w;
-    const Floats slack_z = (error_z + error_w * magnitude(z)) * one_over_w + all(sliver_depth) * magnitude(z);
+    const Floats slack_z =
+        (error_z + error_w * magnitude(z)) * one_over_w + all(k_sliver_depth) * magnitude(z);
     low_x = min(low_x, x - slack_x);
     low_y = min(low_y, y - slack_y);
     negative_high_x = min(negative_high_x, zero - (x + slack_x));
     negative_high_y = min(negative_high_y, zero - (y + slack_y));
     negative_nearest = min(negative_nearest, zero - (z + slack_z));
+    farthest = min(farthest, z);
   }
 
   ScreenBox result;
   for (const unsigned corners : outside) {
-    if (corners == every_lane) return result;
+    if (corners == k_every_lane) return result;
   }
-  if (in_front != every_lane) {
+  if (in_front != k_every_lane) {
     result.visible = true;
     result.right = target.width - 1;
     result.top = target.height - 1;
@@ -113,11 +119,13 @@ inline ScreenBox screen_box_of(const Aabb& box, const BoxView& view, const Targe
   if (right < 0.0f || left >= width || top < 0.0f || bottom >= height) return result;
   result.visible = true;
   result.nearest = -least(negative_nearest);
+  const float depth_range = result.nearest - least(farthest);
+  if (depth_range > 0.0f) result.nearest += depth_range;
   result.left = left > 0.0f ? static_cast<int>(left) : 0;
   result.bottom = bottom > 0.0f ? static_cast<int>(bottom) : 0;
   result.right = right < width - 1.0f ? static_cast<int>(right) : target.width - 1;
   result.top = top < height - 1.0f ? static_cast<int>(top) : target.height - 1;
-  result.unclipped = well_inside == every_lane;
+  result.unclipped = well_inside == k_every_lane;
   return result;
 }
 

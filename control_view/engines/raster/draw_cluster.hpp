@@ -94,15 +94,14 @@ struct UvPlane {
 /// Draws clusters of one item.
 class ItemDrawer {
  public:
-  ItemDrawer(const KernelScene& scene, const RasterView& view, Target& target)
-      : scene_(scene), view_(view), target_(target) {}
+  ItemDrawer(const KernelScene& scene, const RasterView& view, Target& target, RegionMemory& memory)
+      : scene_(scene), view_(view), target_(target), memory_(memory) {}
 
   /// `may_be_cut`: not certainly inside the view as a whole. `mark` is for blended items: a number of this
   /// object's own.
   void begin(const Item& item, bool may_be_cut, std::int32_t mark) {
     item_ = &item;
     may_be_cut_ = may_be_cut;
-    cut_ = Cut::unknown;
     placement_ = &scene_.placements[item.object];
     mark_ = mark;
     blended_pixels_ = 0;
@@ -241,16 +240,19 @@ class ItemDrawer {
            });
   }
 
-  /// Whether any vertex of the whole item lies outside the view. Asked for slivers alone.
+  /// Whether any vertex of the whole item lies outside the view. Asked for slivers alone, and found out once
+  /// an item and round.
   [[nodiscard]] bool item_is_cut() {
-    if (cut_ == Cut::unknown) {
-      cut_ = Cut::no;
+    std::uint32_t& known = memory_.item_cut[item_ - scene_.items];
+    if (known >> 1 != memory_.round) {
+      bool cut = false;
       ClusterVertices vertices;
-      for (std::uint32_t i = item_->first_cluster; i < item_->end_cluster && cut_ == Cut::no; ++i) {
-        if (transform(scene_, scene_.clusters[i], *placement_, view_, true, vertices) != 0) cut_ = Cut::yes;
+      for (std::uint32_t i = item_->first_cluster; i < item_->end_cluster && !cut; ++i) {
+        cut = transform(scene_, scene_.clusters[i], *placement_, view_, true, vertices) != 0;
       }
+      known = memory_.round << 1 | (cut ? 1u : 0u);
     }
-    return cut_ == Cut::yes;
+    return (known & 1u) != 0;
   }
 
   [[nodiscard]] bool passes(const UvPlane& plane, int px, int py) const {
@@ -265,12 +267,11 @@ class ItemDrawer {
   const KernelScene& scene_;
   const RasterView& view_;
   Target& target_;
+  RegionMemory& memory_;
   const LaneOffsets lanes_;
   const Item* item_ = nullptr;
   const Placement* placement_ = nullptr;
-  enum class Cut : std::uint8_t { unknown, no, yes };
   bool may_be_cut_ = true;
-  Cut cut_ = Cut::unknown;
   std::int32_t rank_ = 0;
   std::int32_t mark_ = 0;
   std::uint32_t blended_pixels_ = 0;

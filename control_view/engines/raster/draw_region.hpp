@@ -12,7 +12,7 @@ class RegionDrawer {
       : scene_(*job.scene),
         memory_(memory),
         target_(job.region, memory),
-        drawer_(*job.scene, *job.view, target_) {
+        drawer_(*job.scene, *job.view, target_, memory) {
     for (int column = 0; column < 4; ++column) {
       for (int row = 0; row < 4; ++row) {
         view_.clip_from_box[column][row] = job.view->clip_from_scene[column][row];
@@ -27,12 +27,11 @@ class RegionDrawer {
   void draw_first(const std::uint32_t* ranks, std::uint32_t count) {
     for (std::uint32_t i = 0; i < count; ++i) {
       const RankOwner& owner = scene_.owners[ranks[i]];
-      if (is_gone(owner.object)) continue;
       const Item& item = scene_.items[owner.item];
-      if (item.blended) continue;
+      if (item.blended || is_gone(owner.object)) continue;
       enter(owner.object);
       drawer_.begin(item, true, 0);
-      draw_cluster(item, owner.cluster);
+      draw_rank(item, static_cast<std::int32_t>(ranks[i]));
     }
   }
 
@@ -67,11 +66,6 @@ class RegionDrawer {
       const std::uint32_t object = memory_.blended_candidates[i];
       const ScreenBox box = screen_box(scene_.bounds[object]);
       if (!box.visible || hidden(box)) continue;
-      for (int block_y = box.bottom / k_block; block_y <= box.top / k_block; ++block_y) {
-        for (int block_x = box.left / k_block; block_x <= box.right / k_block; ++block_x) {
-          target_.open(block_y * target_.blocks_x + block_x);
-        }
-      }
       ++result_.drawn_objects;
       const std::int32_t mark = ++memory_.blended_draws;
       std::uint32_t pixels = 0;
@@ -116,7 +110,7 @@ class RegionDrawer {
     return box.min.x > box.max.x ? ScreenBox{} : screen_box_of(box, view_, target_);
   }
   bool hidden(const ScreenBox& box) {
-    return target_.hides(box.left, box.bottom, box.right, box.top, box.nearest);
+    return target_.hides_rectangle(box.left, box.bottom, box.right, box.top, box.nearest);
   }
 
   void push_if_visible(std::uint32_t index, Candidate* stack, int& depth) {
@@ -157,36 +151,49 @@ class RegionDrawer {
     drawer_.begin(item, !object_box.unclipped, mark);
     if (item.end_cluster - item.first_cluster == 1) {
       // Its box is the object's, or not much smaller.
-      draw_tested(item, item.first_cluster, !object_box.unclipped);
+      if (item.blended || begin_rank(item.first_rank)) {
+        draw_cluster(item, item.first_cluster, item.first_rank, !object_box.unclipped);
+      }
       return;
     }
     enter(item.object);
-    for (std::uint32_t i = item.first_cluster; i < item.end_cluster; ++i) draw_cluster(item, i);
+    if (item.blended) return draw_clusters(item, item.first_cluster, item.end_cluster, item.first_rank);
+    const std::uint32_t last = (item.end_cluster - item.first_cluster - 1) >> scene_.rank_shift;
+    for (std::uint32_t part = 0; part <= last; ++part) {
+      draw_rank(item, item.first_rank + static_cast<std::int32_t>(part));
+    }
   }
 
-  /// Unless it is hidden.
-  void draw_cluster(const Item& item, std::uint32_t cluster) {
-    if (!item.blended && memory_.drawn_in[rank_of(item, cluster)] == memory_.round) return;
-    const ScreenBox box = screen_box_of(scene_.clusters[cluster].box, object_view_, target_);
-    if (box.visible && !hidden(box)) draw_tested(item, cluster, !box.unclipped);
+  void draw_rank(const Item& item, std::int32_t rank) {
+    if (!begin_rank(rank)) return;
+    const std::uint32_t first = scene_.owners[rank].first_cluster;
+    const std::uint32_t most = std::uint32_t{1} << scene_.rank_shift;
+    draw_clusters(item, first, item.end_cluster - first < most ? item.end_cluster : first + most, rank);
   }
 
-  void draw_tested(const Item& item, std::uint32_t cluster, bool may_clip) {
-    const std::int32_t rank = rank_of(item, cluster);
-    if (!item.blended) {
-      if (memory_.drawn_in[rank] == memory_.round) return;
-      memory_.drawn_in[rank] = memory_.round;
-      if (memory_.object_drawn_in[item.object] != memory_.round) {
-        memory_.object_drawn_in[item.object] = memory_.round;
-        ++result_.drawn_objects;
-      }
+  /// Whether the rank is still to be drawn in this round. What is hidden now stays so, and is not asked about
+  /// again.
+  bool begin_rank(std::int32_t rank) {
+    if (memory_.drawn_in[rank] == memory_.round) return false;
+    memory_.drawn_in[rank] = memory_.round;
+    return true;
+  }
+
+  /// Those that are not hidden.
+  void draw_clusters(const Item& item, std::uint32_t first, std::uint32_t end, std::int32_t rank) {
+    for (std::uint32_t cluster = first; cluster < end; ++cluster) {
+      const ScreenBox box = screen_box_of(scene_.clusters[cluster].box, object_view_, target_);
+      if (box.visible && !hidden(box)) draw_cluster(item, cluster, rank, !box.unclipped);
+    }
+  }
+
+  void draw_cluster(const Item& item, std::uint32_t cluster, std::int32_t rank, bool may_clip) {
+    if (!item.blended && memory_.object_drawn_in[item.object] != memory_.round) {
+      memory_.object_drawn_in[item.object] = memory_.round;
+      ++result_.drawn_objects;
     }
     drawer_.draw(scene_.clusters[cluster], rank, may_clip);
     result_.drawn_triangles += scene_.clusters[cluster].triangle_count;
-  }
-
-  static std::int32_t rank_of(const Item& item, std::uint32_t cluster) {
-    return item.first_rank + static_cast<std::int32_t>(cluster - item.first_cluster);
   }
 
   [[nodiscard]] bool is_gone(std::uint32_t object) const {
@@ -258,7 +265,7 @@ class RegionDrawer {
   BoxView object_view_;
   std::uint32_t object_of_view_ = 0xffffffffu;
   std::uint32_t blended_count_ = 0;
-  RegionResult result_;
+  RegionResult result_{};
 };
 
 RegionResult draw_region(const RegionJob& job, RegionMemory& memory) {

@@ -102,8 +102,8 @@ class BlockWalk {
   }
   /// At the first pixel of a block that is not outside: fits, since steps within a block are small beside it.
   [[nodiscard]] std::int32_t edge(int i) const {
-    constexpr std::int64_t limit = 1 << 29;
-    return static_cast<std::int32_t>(at_[i] < limit ? at_[i] : limit);
+    constexpr std::int64_t k_limit = 1 << 29;
+    return static_cast<std::int32_t>(at_[i] < k_limit ? at_[i] : k_limit);
   }
   /// NaN where the plane is not finite.
   [[nodiscard]] float nearest(int x, int y) const {
@@ -132,38 +132,38 @@ inline bool visit_block(const Target& target, const FillTriangle& t, const Block
   const int x = target.x0 + bx * k_block, y = target.y0 + by * k_block;
   const Floats depth_x = all(t.depth_x), depth_y = all(t.depth_y), depth_0 = all(t.depth_0), one = all(1.0f);
   // Vectors shorter than a row take two columns in turn, longer ones several rows at once.
-  constexpr int vectors_a_row = k_lanes < k_block ? k_block / k_lanes : 1;
-  constexpr int rows_a_vector = k_lanes > k_block ? k_lanes / k_block : 1;
+  constexpr int k_vectors_a_row = k_lanes < k_block ? k_block / k_lanes : 1;
+  constexpr int k_rows_a_vector = k_lanes > k_block ? k_lanes / k_block : 1;
   const Floats columns = all(static_cast<float>(x)) + lanes.column_f;
-  Floats along_row[vectors_a_row];
-  for (int part = 0; part < vectors_a_row; ++part) {
+  Floats along_row[k_vectors_a_row];
+  for (int part = 0; part < k_vectors_a_row; ++part) {
     along_row[part] = fused_multiply_add(depth_x, columns + all(static_cast<float>(part * k_lanes)), depth_0);
   }
-  const Floats next_row = all(static_cast<float>(rows_a_vector));
+  const Floats next_row = all(static_cast<float>(k_rows_a_vector));
   const int first_pixel = (by * target.blocks_x + bx) * k_block_pixels;
   bool changed = false;
   // Rounding at the near plane may lift a depth above 1.
   if (walk.covers()) {
     Floats py = all(static_cast<float>(y)) + lanes.row_f;
-    for (int row = 0; row < k_block; row += rows_a_vector, py = py + next_row) {
-      for (int part = 0; part < vectors_a_row; ++part) {
+    for (int row = 0; row < k_block; row += k_rows_a_vector, py = py + next_row) {
+      for (int part = 0; part < k_vectors_a_row; ++part) {
         const Floats depth = min(fused_multiply_add(depth_y, py, along_row[part]), one);
         changed |= visit(first_pixel + row * k_block + part * k_lanes, EveryLane{}, depth);
       }
     }
     return changed;
   }
-  const int first_row = (t.bottom > y ? t.bottom - y : 0) / rows_a_vector * rows_a_vector;
+  const int first_row = (t.bottom > y ? t.bottom - y : 0) / k_rows_a_vector * k_rows_a_vector;
   const int last_row = t.top - y < k_block - 1 ? t.top - y : k_block - 1;
   Ints edge[3], edge_step[3], part_step[3];
   for (int e = 0; e < 3; ++e) {
     edge[e] = lane_edge[e] + all(walk.edge(e) + t.step_y[e] * first_row);
-    edge_step[e] = all(t.step_y[e] * rows_a_vector);
+    edge_step[e] = all(t.step_y[e] * k_rows_a_vector);
     part_step[e] = all(t.step_x[e] * k_lanes);
   }
   Floats py = all(static_cast<float>(y + first_row)) + lanes.row_f;
-  for (int row = first_row; row <= last_row; row += rows_a_vector, py = py + next_row) {
-    for (int part = 0; part < vectors_a_row; ++part) {
+  for (int row = first_row; row <= last_row; row += k_rows_a_vector, py = py + next_row) {
+    for (int part = 0; part < k_vectors_a_row; ++part) {
       const Ints edges = part == 0
                              ? edge[0] | edge[1] | edge[2]
                              : (edge[0] + part_step[0]) | (edge[1] + part_step[1]) | (edge[2] + part_step[2]);
@@ -191,7 +191,8 @@ inline void for_each_covered(Target& target, const FillTriangle& t, const LaneOf
         walk.enter(bx);
         if (walk.outside()) continue;
         const int block = by * target.blocks_x + bx;
-        if (target.hides(block, walk.nearest(target.x0 + bx * k_block, target.y0 + by * k_block))) continue;
+        if (target.hides_block(block, walk.nearest(target.x0 + bx * k_block, target.y0 + by * k_block)))
+          continue;
         target.open(block);
         if (visit_block(target, t, walk, lane_edge, lanes, bx, by, visit)) target.mark_dirty(block);
       }

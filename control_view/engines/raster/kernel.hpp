@@ -46,6 +46,7 @@ struct KernelScene {
   const std::uint32_t* first_item;
   const Placement* placements;
   const RankOwner* owners;
+  std::uint32_t rank_shift;
   const std::uint8_t *has_opaque, *has_blended;
   const MaskMaterial* mask_materials;
   const AlphaTexture* alpha_textures;
@@ -74,6 +75,9 @@ struct RegionMemory {
   std::uint32_t* pixels_of_rank;  ///< zero between rounds
   std::uint32_t* seen_ranks;      ///< those that own a pixel, in no order
 
+  /// By item: twice the round in which it was found out whether it is cut, and one if it is.
+  std::uint32_t* item_cut;
+
   // Each as long as there are objects.
   std::uint32_t* object_drawn_in;  ///< the round any of an object was last drawn in
   std::uint32_t* blended_candidates;
@@ -94,10 +98,10 @@ struct RegionJob {
 };
 
 struct RegionResult {
-  std::uint32_t count_count = 0;  ///< entries of RegionMemory::counts
-  std::uint32_t seen_count = 0;   ///< entries of RegionMemory::seen_ranks
-  std::uint32_t drawn_objects = 0;
-  std::uint64_t drawn_triangles = 0;
+  std::uint32_t count_count;  ///< entries of RegionMemory::counts
+  std::uint32_t seen_count;   ///< entries of RegionMemory::seen_ranks
+  std::uint32_t drawn_objects;
+  std::uint64_t drawn_triangles;
 };
 
 /// Draws what the region shows of the scene and counts it into memory.counts. One for each instruction set;

@@ -11,7 +11,7 @@ void NearestFirst::sort(std::vector<std::uint32_t>& ranks, const glm::vec3& eye_
   for (const std::uint32_t rank : ranks) {
     const RankOwner& owner = scene.owners[rank];
     const auto& columns = scene.placements[owner.object].columns;
-    const glm::vec3 center = scene.clusters[owner.cluster].box.center();
+    const glm::vec3 center = scene.clusters[owner.first_cluster].box.center();
     glm::vec3 offset = -eye_m;
     for (int row = 0; row < 3; ++row) {
       offset[row] += columns[0][row] * center.x + columns[1][row] * center.y + columns[2][row] * center.z +

@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
-#include <glm/gtc/matrix_transform.hpp>
 #include <glm/matrix.hpp>
 
 #include "common/error.hpp"
@@ -46,10 +47,17 @@ RasterView view_of(const Eye& eye, const glm::dvec3& world_origin_m, ImageSize i
   return view;
 }
 
+std::size_t blocks_of(const raster::RasterRegion& region) {
+  const auto along = [](std::int32_t pixels) {
+    return static_cast<std::size_t>((pixels + raster::k_block - 1) / raster::k_block);
+  };
+  return along(region.width) * along(region.height);
+}
+
 class RasterEngine final : public VisibilityEngine {
  public:
-  RasterEngine(const Scene& scene, std::uint32_t threads, raster::DrawRegion kernel)
-      : scene_(scene, threads),
+  RasterEngine(const Scene& scene, std::uint32_t threads, raster::DrawRegion kernel, std::uint64_t most_ranks)
+      : scene_(scene, threads, most_ranks),
         hierarchy_(scene.object_bounds),
         moved_(scene),
         sum_(scene.object_count()),
@@ -57,8 +65,7 @@ class RasterEngine final : public VisibilityEngine {
         threads_(threads) {
     const bool any_blended = std::any_of(scene_.has_blended.begin(), scene_.has_blended.end(),
                                          [](std::uint8_t has) { return has != 0; });
-    for (std::uint32_t i = 0; i < threads_.count(); ++i)
-      workers_.emplace_back(scene.object_count(), scene_.owners.size(), any_blended);
+    for (std::uint32_t i = 0; i < threads_.count(); ++i) workers_.emplace_back(scene_, any_blended);
   }
 
   void apply(const SceneEdits& edits) override {
@@ -72,14 +79,17 @@ class RasterEngine final : public VisibilityEngine {
   EngineStats count(const ViewQuery& query, PixelCounts& counts) override {
     const auto began = std::chrono::steady_clock::now();
     plan(query);
-    for (RegionWorker& worker : workers_) worker.begin(query.eyes.size());
+    std::size_t blocks = 0;
+    for (const Task& task : tasks_) blocks = std::max(blocks, blocks_of(task.job.region));
+    for (RegionWorker& worker : workers_) worker.begin(query.eyes.size(), blocks);
     EngineStats stats;
     stats.cull_s = seconds_since(began);
 
     const auto draw_began = std::chrono::steady_clock::now();
     std::atomic<std::size_t> next{0};
     const auto work = [&](std::uint32_t worker) {
-      for (std::size_t i = next++; i < tasks_.size(); i = next++) draw(tasks_[i], workers_[worker]);
+      for (std::size_t i = next++; i < tasks_.size(); i = next++)
+        draw(tasks_[i], workers_[worker], draw_began);
     };
     if (tasks_.size() == 1) {
       work(0);
@@ -169,10 +179,10 @@ class RasterEngine final : public VisibilityEngine {
     return *cuts_[eye];
   }
 
-  void draw(Task& task, RegionWorker& worker) {
-    const auto began = std::chrono::steady_clock::now();
+  void draw(Task& task, RegionWorker& worker, std::chrono::steady_clock::time_point all_began) {
     worker.draw(kernel_, task.job, task.eye);
-    task.time_s = seconds_since(began);
+    // Since all began: a worker that wakes late is to get less.
+    task.time_s = seconds_since(all_began);
   }
 
   void add_counts_of(std::size_t eye, bool part) {
@@ -204,6 +214,7 @@ class RasterEngine final : public VisibilityEngine {
     scene.first_item = scene_.first_item.data();
     scene.placements = scene_.placements.data();
     scene.owners = scene_.owners.data();
+    scene.rank_shift = scene_.rank_shift;
     scene.has_opaque = scene_.has_opaque.data();
     scene.has_blended = scene_.has_blended.data();
     scene.mask_materials = scene_.mask_materials.data();
@@ -241,10 +252,11 @@ std::unique_ptr<VisibilityEngine> make_raster_engine(const Scene& scene, const E
 }
 
 std::unique_ptr<VisibilityEngine> make_raster_engine(const Scene& scene, const EngineOptions& options,
-                                                     std::string_view instruction_set) {
+                                                     std::string_view instruction_set,
+                                                     std::uint64_t most_ranks) {
   for (const raster::RasterKernel& kernel : raster::raster_kernels()) {
     if (kernel.supported && kernel.name == instruction_set) {
-      return std::make_unique<RasterEngine>(scene, options.threads, kernel.draw);
+      return std::make_unique<RasterEngine>(scene, options.threads, kernel.draw, most_ranks);
     }
   }
   throw InputError("engine raster: this machine has no instruction set '" + std::string(instruction_set) +

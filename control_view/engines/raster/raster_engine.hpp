@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string_view>
 #include <vector>
@@ -18,8 +19,9 @@ namespace sightline {
 ///
 /// Exact for the pixels it samples, as item_buffer is, and equal to it: the arithmetic of vertices, clipping,
 /// snapping, fill rule and depth follows llvmpipe's step by step (tests compare the bits). Where the two may
-/// differ: slivers whose extrapolated depth leaves their own object's box, and alpha tests within rounding of
-/// the cutoff.
+/// differ: a sliver's extrapolated depth may leave even the margin given to its object's box, and then it
+/// depends on the way how much of it is drawn; slivers of primitives cut by the view, which llvmpipe culls by
+/// runs of 341 triangles and we by primitive; alpha tests within rounding of the cutoff.
 ///
 /// Sources: Pineda, "A Parallel Algorithm for Polygon Rasterization", 1988 (edge functions); Greene, Kass and
 /// Miller, "Hierarchical Z-Buffer Visibility", 1993 (test-then-draw over a hierarchy, temporal coherence);
@@ -28,11 +30,15 @@ namespace sightline {
 [[nodiscard]] std::unique_ptr<VisibilityEngine> make_raster_engine(const Scene& scene,
                                                                    const EngineOptions& options);
 
+/// Ranks an engine keeps unless there are more objects than that: 12 bytes each, and as much again for every
+/// worker.
+inline constexpr std::uint64_t k_most_raster_ranks = 1u << 22;
+
 /// The same with one named instruction set (see raster_instruction_sets); for tests and benchmarks. Throws
 /// InputError where this machine lacks it.
-[[nodiscard]] std::unique_ptr<VisibilityEngine> make_raster_engine(const Scene& scene,
-                                                                   const EngineOptions& options,
-                                                                   std::string_view instruction_set);
+[[nodiscard]] std::unique_ptr<VisibilityEngine> make_raster_engine(
+    const Scene& scene, const EngineOptions& options, std::string_view instruction_set,
+    std::uint64_t most_ranks = k_most_raster_ranks);
 
 /// Those this machine can run, best first: of avx512, avx2, sse41, plain.
 [[nodiscard]] std::vector<std::string_view> raster_instruction_sets();

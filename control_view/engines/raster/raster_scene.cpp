@@ -1,11 +1,9 @@
 #include "control_view/engines/raster/raster_scene.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <memory>
 #include <numeric>
 #include <thread>
-#include <tuple>
 
 #include <glm/matrix.hpp>
 
@@ -23,6 +21,12 @@ Placement placement_of(const glm::dmat4& scene_from_object) {
     for (int row = 0; row < 3; ++row) placement.columns[column][row] = single[column][row];
   }
   return placement;
+}
+
+/// How many ranks an item takes where each stands for 2^shift clusters.
+std::uint32_t ranks_of(const Item& item, std::uint32_t shift) {
+  const std::uint32_t clusters = item.end_cluster - item.first_cluster;
+  return static_cast<std::uint32_t>((std::uint64_t{clusters} + (std::uint64_t{1} << shift) - 1) >> shift);
 }
 
 template <class T>
@@ -66,14 +70,15 @@ void build(const Scene& scene, bool with_uvs, Part& part) {
 
 }  // namespace
 
-RasterScene::RasterScene(const Scene& scene, std::uint32_t threads) : world_origin_m(scene.world_origin_m) {
+RasterScene::RasterScene(const Scene& scene, std::uint32_t threads, std::uint64_t most_ranks)
+    : world_origin_m(scene.world_origin_m) {
   const bool with_uvs =
       !scene.uvs.empty() && std::any_of(scene.materials.begin(), scene.materials.end(),
                                         [](const Material& m) { return m.alpha_mode == AlphaMode::mask; });
   if (threads == 0) threads = std::max(1u, std::thread::hardware_concurrency());
-  constexpr std::size_t worthwhile_indices = 100'000;
+  constexpr std::size_t k_worthwhile_indices = 100'000;
   std::vector<Part> parts =
-      equal_parts(scene, std::clamp<std::size_t>(scene.indices.size() / worthwhile_indices, 1, threads));
+      equal_parts(scene, std::clamp<std::size_t>(scene.indices.size() / k_worthwhile_indices, 1, threads));
   {
     std::vector<std::jthread> workers;
     for (std::size_t i = 1; i < parts.size(); ++i) {
@@ -103,6 +108,7 @@ RasterScene::RasterScene(const Scene& scene, std::uint32_t threads) : world_orig
 
   make_items(scene, first_cluster_of_primitive);
   make_mask_materials(scene);
+  choose_rank_shift(most_ranks);
   make_ranks();
 }
 
@@ -157,13 +163,24 @@ void RasterScene::make_mask_materials(const Scene& scene) {
   }
 }
 
+/// Instances of a large mesh share its clusters but not their ranks, of which each takes 12 bytes, and as
+/// much again for every worker.
+void RasterScene::choose_rank_shift(std::uint64_t most_ranks) {
+  for (rank_shift = 0; rank_shift < 31; ++rank_shift) {
+    std::uint64_t ranks = 0;
+    for (const Item& item : items) ranks += ranks_of(item, rank_shift);
+    // Two an item, or one for those of one cluster, can always be had.
+    if (ranks <= std::max<std::uint64_t>(most_ranks, 2 * items.size())) return;
+  }
+}
+
 void RasterScene::make_ranks() {
   // Groups as GpuScene draws them: sides, winding and alpha test decide, then the object, then its primitive.
   const auto group_of = [this](const Item& item) {
     return (item.double_sided ? 1 : 0) | (placements[item.object].mirrored ? 2 : 0) | (item.masked ? 4 : 0);
   };
   std::uint32_t in_group[8] = {};
-  for (const Item& item : items) in_group[group_of(item)] += item.end_cluster - item.first_cluster;
+  for (const Item& item : items) in_group[group_of(item)] += ranks_of(item, rank_shift);
   std::uint32_t next[8];
   std::uint32_t first = 1;
   for (int group = 0; group < 8; ++group) {
@@ -175,8 +192,9 @@ void RasterScene::make_ranks() {
     Item& item = items[i];
     std::uint32_t& rank = next[group_of(item)];
     item.first_rank = static_cast<std::int32_t>(rank);
-    for (std::uint32_t c = item.first_cluster; c < item.end_cluster; ++c)
-      owners[rank++] = {item.object, i, c};
+    for (std::uint32_t part = 0; part < ranks_of(item, rank_shift); ++part) {
+      owners[rank++] = {item.object, i, item.first_cluster + (part << rank_shift)};
+    }
   }
 }
 

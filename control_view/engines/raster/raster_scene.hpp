@@ -33,7 +33,7 @@ struct Item {
   std::uint32_t object = 0;
   std::uint32_t first_cluster = 0;
   std::uint32_t end_cluster = 0;
-  /// Rank of its first cluster; the others follow. Ranks are places in OpenGL's drawing order (GpuScene),
+  /// Rank of its first clusters; the others follow. Ranks are places in OpenGL's drawing order (GpuScene),
   /// from 1, and 0 is the background: where two surfaces coincide, the lower rank owns the pixel.
   std::int32_t first_rank = 0;
   std::uint32_t material = 0;
@@ -42,11 +42,11 @@ struct Item {
   bool blended = false;
 };
 
-/// What a rank stands for: one cluster of one item.
+/// What a rank stands for: a cluster of an item, or several neighbours where there would be too many ranks.
 struct RankOwner {
   std::uint32_t object = 0;
   std::uint32_t item = 0;
-  std::uint32_t cluster = 0;
+  std::uint32_t first_cluster = 0;
 };
 
 /// Where an object stands, as the vertex shader has it: columns, single precision.
@@ -78,17 +78,11 @@ struct MaskMaterial {
 /// the mesh frame are left out.
 class RasterScene {
  public:
-  explicit RasterScene(const Scene& scene, std::uint32_t threads = 0);
+  /// Of more clusters than `most_ranks`, instances counted each, several share a rank.
+  RasterScene(const Scene& scene, std::uint32_t threads, std::uint64_t most_ranks);
 
   /// Sets placements, scene frame. Ranks are made anew only where an object turns its winding.
   void set_transforms(std::span<const ObjectId> ids, std::span<const glm::dmat4> scene_from_object);
-
-  [[nodiscard]] std::uint32_t object_count() const noexcept {
-    return static_cast<std::uint32_t>(placements.size());
-  }
-  [[nodiscard]] std::span<const Item> items_of(std::uint32_t object) const noexcept {
-    return {items.data() + first_item[object], items.data() + first_item[object + 1]};
-  }
 
   std::vector<float> x, y, z;            ///< by vertex, mesh frame
   std::vector<float> u, v;               ///< by vertex; empty without mask materials
@@ -98,6 +92,7 @@ class RasterScene {
   std::vector<std::uint32_t> first_item;              ///< of each object, and one past the last
   std::vector<Placement> placements;                  ///< by object
   std::vector<RankOwner> owners;                      ///< by rank; entry 0 is the background's
+  std::uint32_t rank_shift = 0;                       ///< a rank stands for 2^rank_shift clusters
   std::vector<std::uint8_t> has_opaque, has_blended;  ///< by object
   std::vector<MaskMaterial> mask_materials;           ///< by material
   std::vector<AlphaTexture> alpha_textures;
@@ -107,6 +102,7 @@ class RasterScene {
  private:
   void make_items(const Scene& scene, const std::vector<std::uint32_t>& first_cluster_of_primitive);
   void make_mask_materials(const Scene& scene);
+  void choose_rank_shift(std::uint64_t most_ranks);
   void make_ranks();
 };
 

@@ -4,25 +4,27 @@
 
 namespace sightline::raster {
 
-RegionWorker::RegionWorker(std::uint32_t object_count, std::size_t rank_count, bool any_blended)
+RegionWorker::RegionWorker(const RasterScene& scene, bool any_blended)
     : any_blended_(any_blended),
-      drawn_in_(rank_count, 0),
-      pixels_of_rank_(rank_count, 0),
-      seen_ranks_(rank_count, 0),
-      object_drawn_in_(object_count, 0),
-      blended_candidates_(object_count, 0),
-      pixels_of_object_(object_count, 0),
-      region_counts_(object_count) {
+      drawn_in_(scene.owners.size(), 0),
+      pixels_of_rank_(scene.owners.size(), 0),
+      seen_ranks_(scene.owners.size(), 0),
+      item_cut_(scene.items.size(), 0),
+      object_drawn_in_(scene.placements.size(), 0),
+      blended_candidates_(scene.placements.size(), 0),
+      pixels_of_object_(scene.placements.size(), 0),
+      region_counts_(scene.placements.size()) {
   memory_.drawn_in = drawn_in_.data();
   memory_.pixels_of_rank = pixels_of_rank_.data();
   memory_.seen_ranks = seen_ranks_.data();
+  memory_.item_cut = item_cut_.data();
   memory_.object_drawn_in = object_drawn_in_.data();
   memory_.blended_candidates = blended_candidates_.data();
   memory_.pixels_of_object = pixels_of_object_.data();
   memory_.counts = region_counts_.data();
 }
 
-void RegionWorker::begin(std::size_t eyes) {
+void RegionWorker::begin(std::size_t eyes, std::size_t blocks) {
   if (counts_.size() < eyes) {
     counts_.resize(eyes);
     seen_.resize(eyes);
@@ -31,11 +33,7 @@ void RegionWorker::begin(std::size_t eyes) {
   for (auto& seen : seen_) seen.clear();
   drawn_objects_ = 0;
   drawn_triangles_ = 0;
-}
 
-void RegionWorker::make_room(const RasterRegion& region) {
-  const auto blocks = static_cast<std::size_t>((region.width + k_block - 1) / k_block) *
-                      static_cast<std::size_t>((region.height + k_block - 1) / k_block);
   if (block_state_.size() < blocks) {
     depth_.resize(blocks * k_block_pixels);
     rank_.resize(blocks * k_block_pixels + k_padding);
@@ -48,20 +46,25 @@ void RegionWorker::make_room(const RasterRegion& region) {
   memory_.blended_mark = blended_mark_.data();
   memory_.block_far = block_far_.data();
   memory_.block_state = block_state_.data();
-  if (++memory_.round == 0) {
-    for (auto* rounds : {&drawn_in_, &object_drawn_in_}) std::fill(rounds->begin(), rounds->end(), 0);
+}
+
+void RegionWorker::begin_round() {
+  constexpr std::uint32_t k_last_round = 0x7fffffffu;  // item_cut holds twice a round
+  if (memory_.round++ == k_last_round) {
+    for (auto* rounds : {&drawn_in_, &object_drawn_in_, &item_cut_})
+      std::fill(rounds->begin(), rounds->end(), 0);
     memory_.round = 1;
   }
-  constexpr std::int32_t many_marks = 1
-                                      << 30;  // leaves room for a frame that draws every object there can be
-  if (memory_.blended_draws > many_marks) {
+  // Leaves room for a round that draws every object there can be.
+  constexpr std::int32_t k_many_marks = 1 << 30;
+  if (memory_.blended_draws > k_many_marks) {
     std::fill(blended_mark_.begin(), blended_mark_.end(), 0);
     memory_.blended_draws = 0;
   }
 }
 
 void RegionWorker::draw(DrawRegion kernel, const RegionJob& job, std::size_t eye) {
-  make_room(job.region);
+  begin_round();
   const RegionResult result = kernel(job, memory_);
   counts_[eye].insert(counts_[eye].end(), memory_.counts, memory_.counts + result.count_count);
   seen_[eye].insert(seen_[eye].end(), memory_.seen_ranks, memory_.seen_ranks + result.seen_count);

@@ -11,13 +11,14 @@ namespace sightline::raster {
 /// it counted.
 class RegionWorker {
  public:
-  RegionWorker(std::uint32_t object_count, std::size_t rank_count, bool any_blended);
+  RegionWorker(const RasterScene& scene, bool any_blended);
 
   /// Draws a region of a view and adds what it shows to counts_of(eye) and seen_of(eye).
   void draw(DrawRegion kernel, const RegionJob& job, std::size_t eye);
 
-  /// Forgets what was counted. `eyes` of the next views.
-  void begin(std::size_t eyes);
+  /// Forgets what was counted and makes room for the next views: `eyes` of them, no region of more than
+  /// `blocks` blocks.
+  void begin(std::size_t eyes, std::size_t blocks);
   [[nodiscard]] const std::vector<RegionCount>& counts_of(std::size_t eye) const { return counts_[eye]; }
   /// The ranks that own a pixel, in no order; twice where the eye's view was cut.
   [[nodiscard]] const std::vector<std::uint32_t>& seen_of(std::size_t eye) const { return seen_[eye]; }
@@ -25,13 +26,13 @@ class RegionWorker {
   [[nodiscard]] std::uint64_t drawn_triangles() const noexcept { return drawn_triangles_; }
 
  private:
-  void make_room(const RasterRegion& region);
+  void begin_round();
 
   bool any_blended_;
   std::vector<float> depth_, block_far_;
   std::vector<std::int32_t> rank_, blended_mark_;
   std::vector<BlockState> block_state_;
-  std::vector<std::uint32_t> drawn_in_, pixels_of_rank_, seen_ranks_;
+  std::vector<std::uint32_t> drawn_in_, pixels_of_rank_, seen_ranks_, item_cut_;
   std::vector<std::uint32_t> object_drawn_in_, blended_candidates_, pixels_of_object_;
   std::vector<RegionCount> region_counts_;
   RegionMemory memory_{};

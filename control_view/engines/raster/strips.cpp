@@ -34,7 +34,7 @@ void Strips::balance() {
   if (!(total_s > 0.0)) return;
   // Where the running sum of time reaches each equal share, cost taken as even within a strip; half the way
   // there, since one frame's times are noisy.
-  std::vector<std::int32_t> moved = ends_;
+  moved_ = ends_;
   std::size_t strip = 0;
   double before_s = 0.0;
   for (std::size_t i = 0; i + 1 < count(); ++i) {
@@ -42,9 +42,9 @@ void Strips::balance() {
     while (strip + 1 < count() && before_s + times_s_[strip] < share_s) before_s += times_s_[strip++];
     const double part = times_s_[strip] > 0.0 ? (share_s - before_s) / times_s_[strip] : 0.5;
     const double goal = begin_of(strip) + part * (end_of(strip) - begin_of(strip));
-    moved[i] = on_block(0.5 * (ends_[i] + goal));
+    moved_[i] = on_block(0.5 * (ends_[i] + goal));
   }
-  ends_ = moved;
+  ends_ = moved_;
 }
 
 }  // namespace sightline::raster

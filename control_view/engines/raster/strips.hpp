@@ -32,7 +32,7 @@ class Strips {
   void balance();
 
   std::int32_t width_ = 0;
-  std::vector<std::int32_t> ends_;
+  std::vector<std::int32_t> ends_, moved_;
   std::vector<double> times_s_;
 };
 

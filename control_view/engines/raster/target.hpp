@@ -1,6 +1,8 @@
 // Included by the kernels only: SIGHTLINE_LANES names the namespace of their instruction set.
 #pragma once
 
+#include <cmath>
+
 #include "control_view/engines/raster/kernel.hpp"
 #include "control_view/engines/raster/lanes.hpp"
 
@@ -26,8 +28,9 @@ class Target {
     std::memset(state_, 0, static_cast<std::size_t>(blocks_x * blocks_y));
   }
 
-  /// Whether nothing at `nearest` or farther shows in the block.
-  [[nodiscard]] bool hides(int block, float nearest) {
+  /// Whether nothing at `nearest` or farther shows in the block. Finds its farthest depth anew where that may
+  /// have changed.
+  [[nodiscard]] bool hides_block(int block, float nearest) {
     if (nearest < far_[block]) return true;
     if (state_[block] != BlockState::dirty) return false;
     find_far(block);
@@ -59,7 +62,7 @@ class Target {
 
   /// Whether something at `nearest` or farther shows nowhere in these pixels of the region (ends included). A
   /// tie may show.
-  [[nodiscard]] bool hides(int left, int bottom, int right, int top, float nearest) {
+  [[nodiscard]] bool hides_rectangle(int left, int bottom, int right, int top, float nearest) {
     for (int by = bottom / k_block; by <= top / k_block; ++by) {
       for (int bx = left / k_block; bx <= right / k_block; ++bx) {
         const int block = by * blocks_x + bx;
