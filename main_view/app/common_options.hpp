@@ -68,8 +68,9 @@ struct ServiceOptions {
   std::optional<ImageSize> control_size;
   std::optional<double> control_rate_hz;
   std::optional<std::string> preset;
-  std::optional<int> predictor_order;   ///< of the least-squares polynomial
-  std::optional<int> predictor_window;  ///< poses it is fitted to
+  std::optional<std::string> predictor;  ///< fixed or adaptive
+  std::optional<int> predictor_order;    ///< of the least-squares polynomial
+  std::optional<int> predictor_window;   ///< poses it is fitted to
   std::optional<double> guard_deg;  ///< the daemon sees this much more on every side of the predicted view
 
   [[nodiscard]] bool wanted() const noexcept { return spawn || !connect.empty(); }

@@ -58,6 +58,8 @@ void add_service_options(CLI::App& command, ServiceOptions& options) {
       ->group(group);
   add("--control-rate", options.control_rate_hz, "Most requests a second that the daemon answers");
   add("--preset", options.preset, "Named settings of the daemon: default or avango");
+  add("--predictor", options.predictor, "One polynomial, or a blend that adapts to the motion [fixed]")
+      ->check(CLI::IsMember({"fixed", "adaptive"}));
   add("--predictor-order", options.predictor_order, "Order of the polynomial that predicts the camera [2]");
   add("--predictor-window", options.predictor_window, "Poses that the polynomial is fitted to [20]");
   add("--guard", options.guard_deg, "Degrees by which the control view's field is widened on each side");

@@ -14,9 +14,11 @@ struct PredictOptions {
 };
 
 /// Replays each trace, split where it pauses for more than 0.1 s, and writes `rows` to options.json: for each
-/// trace, horizon and predictor the errors, and `position_covered` and `rotation_covered`, the share of poses
-/// that lay within the error that the predictor had announced. Prints the mean errors relative to the paper's
-/// predictor. Returns an exit code. Throws InputError naming the option or file that is wrong.
+/// trace, horizon and predictor the errors; `coverage`, the share of poses that lay in the announced region,
+/// and `position_covered` and `rotation_covered`, in its position's and its rotation's part; and the region's
+/// mean radii, `region_mm_mean` and `region_deg_mean`. The first 20 poses after a pause are
+/// not counted. Prints the mean errors relative to the paper's predictor. Returns an exit code. Throws
+/// InputError naming the option or file that is wrong.
 int run_predict(const PredictOptions& options);
 
 }  // namespace sightline

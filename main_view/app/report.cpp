@@ -63,8 +63,12 @@ nlohmann::ordered_json settings_of(const SceneOptions& scene, const ReplayOption
   settings["rate_hz"] = replay.rate_hz;
   settings["start_s"] = replay.start_s;
   settings["stereo"] = replay.stereo;
-  settings["predictor_order"] = culling.predictor_order;
-  settings["predictor_window"] = culling.predictor_window;
+  const bool adaptive = culling.predictor == PredictorKind::adaptive;
+  settings["predictor"] = adaptive ? "adaptive" : "fixed";
+  if (!adaptive) {
+    settings["predictor_order"] = culling.predictor_order;
+    settings["predictor_window"] = culling.predictor_window;
+  }
   settings["min_guard_deg"] = culling.min_guard_rad * 180.0 / 3.14159265358979323846;
   settings["max_guard_deg"] = culling.max_guard_rad * 180.0 / 3.14159265358979323846;
   settings["max_staleness_s"] = culling.max_staleness_s;

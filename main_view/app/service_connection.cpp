@@ -46,6 +46,9 @@ void ServiceConnection::require_open(double timeout_s) {
 
 CullingOptions culling_options_of(const ServiceOptions& options) {
   CullingOptions culling;
+  if (options.predictor) {
+    culling.predictor = *options.predictor == "adaptive" ? PredictorKind::adaptive : PredictorKind::fixed;
+  }
   if (options.predictor_order) culling.predictor_order = *options.predictor_order;
   if (options.predictor_window) culling.predictor_window = *options.predictor_window;
   if (options.guard_deg) {

@@ -2,13 +2,22 @@
 
 namespace sightline {
 
+/// How the camera is predicted (see MotionPredictor).
+enum class PredictorKind {
+  adaptive,  ///< order, window and damping follow the motion
+  fixed      ///< predictor_order over predictor_window, as in the Avango paper
+};
+
 /// What an application may choose about prediction, horizon, guard and staleness. Every field has a working
 /// default.
 struct CullingOptions {
   /// Throws InputError naming the first field that is out of its range.
   void validate() const;
 
-  // Motion prediction: order n over the last p poses (the paper's 2 and 20).
+  // Motion prediction. The two numbers are for the fixed one: order n over the last p poses (the paper's 2
+  // and 20), which is the default: the adaptive one is nearer to the truth on recorded heads, but its wider
+  // announced rotation widens the guard and so coarsens the control view.
+  PredictorKind predictor = PredictorKind::fixed;
   int predictor_order = 2;    ///< 0 to k_max_predictor_order
   int predictor_window = 20;  ///< poses, 1 to k_max_predictor_window
 

@@ -26,9 +26,15 @@ Pose between(const TimedPose& before, const TimedPose& after, double time_s) {
 }  // namespace
 
 MotionPredictor::MotionPredictor(const CullingOptions& options)
-    : order_(options.predictor_order), window_(options.predictor_window) {}
+    : order_(options.predictor_order), window_(options.predictor_window) {
+  if (options.predictor == PredictorKind::adaptive) adaptive_.emplace();
+}
 
 PredictedPose MotionPredictor::predict(const PoseHistory& history, double time_s) {
+  return adaptive_ ? adaptive_->predict(history, time_s) : predict_fixed(history, time_s);
+}
+
+PredictedPose MotionPredictor::predict_fixed(const PoseHistory& history, double time_s) {
   const TimedPose& newest = history.newest();
   const double lead_s = time_s - newest.time_s;
   if (!(lead_s > 0.0)) return {newest.pose, 0.0, 0.0};
@@ -90,6 +96,10 @@ PredictedPose MotionPredictor::extrapolate(const PoseHistory& history, double ti
 }
 
 void MotionPredictor::observe(const PoseHistory& history) {
+  if (adaptive_) {
+    adaptive_->observe(history);
+    return;
+  }
   const auto samples = history.samples();
   if (samples.empty()) return;
   const double now_s = samples.back().time_s;

@@ -45,6 +45,20 @@ Eigen::Matrix<double, ParameterCount, 1> powers_of(double x) {
   return row;
 }
 
+/// Options for a linear problem: it is solved by one undamped step; a second polishes what the first rounded
+/// away. TinySolver's cost tolerances are absolute, and a cost of 1e-12 square metres still matters here.
+template <int ParameterCount>
+ceres::TinySolver<ComponentResiduals<ParameterCount>> linear_solver(int steps) {
+  ceres::TinySolver<ComponentResiduals<ParameterCount>> solver;
+  solver.options.initial_trust_region_radius = 1e16;
+  solver.options.max_num_iterations = 1 + steps;
+  solver.options.function_tolerance = 0.0;
+  solver.options.cost_threshold = 0.0;
+  solver.options.gradient_tolerance = 0.0;
+  solver.options.parameter_tolerance = 1e-12;
+  return solver;
+}
+
 template <int ParameterCount>
 Extrapolation fit(std::span<const double> times_s, std::span<const PoseComponents> values, double at_time_s) {
   const auto count = static_cast<Eigen::Index>(times_s.size());
@@ -66,16 +80,7 @@ Extrapolation fit(std::span<const double> times_s, std::span<const PoseComponent
     leverage = at.dot(normal.ldlt().solve(at));
   }
 
-  ceres::TinySolver<ComponentResiduals<ParameterCount>> solver;
-  // A linear problem is solved by one undamped step; the second polishes what the first rounded away.
-  // TinySolver's cost tolerances are absolute, and a cost of 1e-12 square metres still matters here.
-  solver.options.initial_trust_region_radius = 1e16;
-  solver.options.max_num_iterations = 3;
-  solver.options.function_tolerance = 0.0;
-  solver.options.cost_threshold = 0.0;
-  solver.options.gradient_tolerance = 0.0;
-  solver.options.parameter_tolerance = 1e-12;
-
+  auto solver = linear_solver<ParameterCount>(2);
   Eigen::VectorXd samples(count);
   for (std::size_t component = 0; component < k_pose_component_count; ++component) {
     const double newest = values.back()[component];
@@ -93,7 +98,42 @@ Extrapolation fit(std::span<const double> times_s, std::span<const PoseComponent
   return result;
 }
 
+template <int ParameterCount>
+std::array<LocalMotion, 3> fit_motion_of(std::span<const double> lead_s,
+                                         std::span<const LocalMotion> motion) {
+  const auto count = static_cast<Eigen::Index>(lead_s.size());
+  const double span_s = count > 1 ? -lead_s.front() : 1.0;
+  Powers<ParameterCount> powers(count, ParameterCount);
+  for (Eigen::Index i = 0; i < count; ++i)
+    powers.row(i) = powers_of<ParameterCount>(lead_s[static_cast<std::size_t>(i)] / span_s);
+
+  auto solver = linear_solver<ParameterCount>(1);
+  std::array<LocalMotion, 3> result{};
+  Eigen::VectorXd samples(count);
+  for (std::size_t axis = 0; axis < k_motion_axis_count; ++axis) {
+    for (Eigen::Index i = 0; i < count; ++i) samples[i] = motion[static_cast<std::size_t>(i)][axis];
+    Eigen::Matrix<double, ParameterCount, 1> coefficients = Eigen::Matrix<double, ParameterCount, 1>::Zero();
+    solver.Solve(ComponentResiduals<ParameterCount>{powers, samples}, &coefficients);
+    double unit = 1.0;
+    for (int i = 0; i < ParameterCount; ++i, unit /= span_s)
+      result[static_cast<std::size_t>(i)][axis] = coefficients[i] * unit;
+  }
+  return result;
+}
+
 }  // namespace
+
+std::array<LocalMotion, 3> fit_motion(std::span<const double> lead_s, std::span<const LocalMotion> motion,
+                                      int order) {
+  switch (order) {
+    case 0:
+      return fit_motion_of<1>(lead_s, motion);
+    case 1:
+      return fit_motion_of<2>(lead_s, motion);
+    default:
+      return fit_motion_of<3>(lead_s, motion);
+  }
+}
 
 Extrapolation fit_and_extrapolate(std::span<const double> times_s, std::span<const PoseComponents> values,
                                   int order, double at_time_s) {

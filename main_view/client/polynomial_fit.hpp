@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <span>
 
+#include "main_view/client/local_motion.hpp"
+
 namespace sightline {
 
 /// The numbers a pose is fitted by: x, y, z, then the quaternion's w, x, y, z.
@@ -26,5 +28,11 @@ struct Extrapolation {
 [[nodiscard]] Extrapolation fit_and_extrapolate(std::span<const double> times_s,
                                                 std::span<const PoseComponents> values, int order,
                                                 double at_time_s);
+
+/// Least-squares polynomials of `order` through (lead_s, motion): their coefficients of 1, lead_s and
+/// lead_s^2; those above the order are zero. Solved with ceres::TinySolver. Requires as many motions as
+/// leads, at least order + 1 of them, leads strictly increasing up to zero, 0 <= order <= 2.
+[[nodiscard]] std::array<LocalMotion, 3> fit_motion(std::span<const double> lead_s,
+                                                    std::span<const LocalMotion> motion, int order);
 
 }  // namespace sightline

@@ -57,8 +57,9 @@ void fit_in_closed_form(benchmark::State& state) {
 BENCHMARK(fit_in_closed_form);
 
 /// What a frame costs: file a pose, settle old predictions, fit and predict.
-void add_pose_and_predict(benchmark::State& state) {
+void add_pose_and_predict(benchmark::State& state, PredictorKind kind) {
   CullingOptions options;
+  options.predictor = kind;
   PoseHistory history(options);
   MotionPredictor predictor(options);
   int frame = 0;
@@ -70,7 +71,18 @@ void add_pose_and_predict(benchmark::State& state) {
     benchmark::DoNotOptimize(predictor.predict(history, time_s + 0.083));
   }
 }
-BENCHMARK(add_pose_and_predict);
+BENCHMARK_CAPTURE(add_pose_and_predict, adaptive, PredictorKind::adaptive);
+BENCHMARK_CAPTURE(add_pose_and_predict, fixed, PredictorKind::fixed);
+
+void fit_the_bank(benchmark::State& state) {
+  std::vector<TimedPose> samples;
+  for (int i = 0; i < 20; ++i) {
+    const PoseComponents v = at(i / 60.0);
+    samples.push_back({i / 60.0, {{v[0], v[1], v[2]}, {v[3], v[4], v[5], v[6]}}});
+  }
+  for (auto _ : state) benchmark::DoNotOptimize(fit_bank(samples));
+}
+BENCHMARK(fit_the_bank);
 
 }  // namespace
 }  // namespace sightline

@@ -14,6 +14,7 @@ constexpr double k_rate_hz = 60.0;
 
 CullingOptions with(int order, int window) {
   CullingOptions options;
+  options.predictor = PredictorKind::fixed;
   options.predictor_order = order;
   options.predictor_window = window;
   return options;

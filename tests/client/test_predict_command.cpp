@@ -47,7 +47,7 @@ TEST_F(PredictCommand, WritesARowForEachTraceHorizonAndPredictor) {
   options_.horizons = {1, 5};
   ASSERT_EQ(run_predict(options_), 0);
   const auto report = nlohmann::json::parse(std::ifstream(options_.json));
-  ASSERT_EQ(report["rows"].size(), 8u);
+  ASSERT_EQ(report["rows"].size(), 10u);
   for (const auto& row : report["rows"]) {
     EXPECT_EQ(row["trace"], "walk");
     const double frames = row["horizon"];
@@ -56,6 +56,30 @@ TEST_F(PredictCommand, WritesARowForEachTraceHorizonAndPredictor) {
     EXPECT_NEAR(row["position_mm_mean"], expected_mm, 0.1) << row.dump();
     EXPECT_NEAR(row["position_mm_p99"], expected_mm, 0.1);
     EXPECT_NEAR(row["rotation_deg_p95"], 0.0, 1e-5);
+    EXPECT_EQ(row["coverage"], 1.0) << row.dump();
+    EXPECT_GE(row["region_mm_mean"], row["position_mm_mean"]);
+    EXPECT_NEAR(row["region_deg_mean"], 0.0, 1e-4);
+  }
+}
+
+TEST_F(PredictCommand, CountsPosesOutsideTheAnnouncedRegion) {
+  CameraPath path;
+  for (int i = 0; i < 600; ++i) {
+    const double time_s = i / 60.0;
+    // Steady, but for a step of 0.1 m after 5 s that nothing announces.
+    path.samples.push_back(
+        {time_s, {{0.3 * time_s + (i > 300 ? 0.1 : 0.0), 0.0, 0.0}, {1.0, 0.0, 0.0, 0.0}}});
+  }
+  write_camera_path(options_.traces[0], path);
+  options_.horizons = {5};
+  ASSERT_EQ(run_predict(options_), 0);
+  const auto report = nlohmann::json::parse(std::ifstream(options_.json));
+  for (const auto& row : report["rows"]) {
+    if (row["predictor"] != "default") continue;
+    EXPECT_LT(row["coverage"], 1.0);
+    EXPECT_GT(row["coverage"], 0.98);
+    EXPECT_EQ(row["coverage"], row["position_covered"]);
+    EXPECT_EQ(row["rotation_covered"], 1.0);
   }
 }
 
