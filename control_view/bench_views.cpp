@@ -26,6 +26,7 @@ double aspect_of(ImageSize size) {
 /// Ahead, left, behind, right, up, down.
 std::vector<Pose> cube_faces(const Pose& pose) {
   std::vector<Pose> faces;
+  faces.reserve(6);
   const double quarter = glm::half_pi<double>();
   for (int turn = 0; turn < 4; ++turn) {
     faces.push_back(

@@ -49,10 +49,10 @@ enum class GlKind {
 /// for an unknown engine, a counter it does not have, or any counter for an engine that has none.
 [[nodiscard]] EngineOptions resolved(EngineOptions options);
 
-/// Makes the engine that `options` name. For `auto`: with a counter named, the item buffer, which alone has
+/// Makes the engine that `wanted` names. For `auto`: with a counter named, the item buffer, which alone has
 /// counters; else the fastest of exact_candidates over sample_views, measured where there is more than one.
 /// Throws what make_engine throws.
-[[nodiscard]] ChosenEngine choose_engine(const Scene& scene, const EngineOptions& options, ImageSize size,
+[[nodiscard]] ChosenEngine choose_engine(const Scene& scene, const EngineOptions& wanted, ImageSize size,
                                          const Clock& clock);
 
 }  // namespace sightline

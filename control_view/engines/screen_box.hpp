@@ -71,7 +71,7 @@ class BoxProjector {
   }
   /// The same for a piece of a larger box, cut anywhere: `whole` is rounding_in the larger one. What a
   /// triangle draws inside the piece moves with its corners outside.
-  [[nodiscard]] std::optional<ScreenBox> project(const Aabb& piece, const Rounding& whole) const noexcept;
+  [[nodiscard]] std::optional<ScreenBox> project(const Aabb& box, const Rounding& whole) const noexcept;
 
  private:
   [[nodiscard]] glm::vec4 rounding_of(const Aabb& box) const noexcept;

@@ -9,7 +9,8 @@ namespace sightline::raster::SIGHTLINE_LANES {
 class RegionDrawer {
  public:
   RegionDrawer(const RegionJob& job, RegionMemory& memory)
-      : scene_(*job.scene),
+      : job_(job),
+        scene_(*job.scene),
         memory_(memory),
         target_(job.region, memory),
         drawer_(*job.scene, *job.view, target_, memory) {
@@ -23,6 +24,15 @@ class RegionDrawer {
     view_.half_height = 0.5f * static_cast<float>(job.view->image_height);
   }
 
+  RegionResult draw() {
+    draw_first(job_.first, job_.first_count);
+    draw_rest();
+    count_blended();
+    count_opaque();
+    return take_result();
+  }
+
+ private:
   /// What showed last time.
   void draw_first(const std::uint32_t* ranks, std::uint32_t count) {
     for (std::uint32_t i = 0; i < count; ++i) {
@@ -98,7 +108,6 @@ class RegionDrawer {
     return result_;
   }
 
- private:
   /// A node or an object, by its index.
   struct Candidate {
     ScreenBox box;
@@ -257,6 +266,7 @@ class RegionDrawer {
   static constexpr int k_most_at_once = 8;
   static constexpr unsigned k_every_lane = (1u << k_lanes) - 1u;
 
+  const RegionJob& job_;
   const KernelScene& scene_;
   RegionMemory& memory_;
   Target target_;
@@ -267,14 +277,5 @@ class RegionDrawer {
   std::uint32_t blended_count_ = 0;
   RegionResult result_{};
 };
-
-RegionResult draw_region(const RegionJob& job, RegionMemory& memory) {
-  RegionDrawer drawer(job, memory);
-  drawer.draw_first(job.first, job.first_count);
-  drawer.draw_rest();
-  drawer.count_blended();
-  drawer.count_opaque();
-  return drawer.take_result();
-}
 
 }  // namespace sightline::raster::SIGHTLINE_LANES
