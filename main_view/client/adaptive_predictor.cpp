@@ -200,7 +200,7 @@ void AdaptivePredictor::make_record() {
     likely_m = lead.region_m.likely_error(likely_m);
     likely_rad = lead.region_rad.likely_error(likely_rad);
   }
-  records_.push_back(std::move(record));
+  records_.push_back(record);
 }
 
 void AdaptivePredictor::drop_old_records() {
