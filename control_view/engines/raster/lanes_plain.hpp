@@ -7,7 +7,8 @@
 
 namespace sightline::raster::plain {
 
-inline constexpr int k_lanes = 4;
+/// As many as AVX-512 has, so that machines without it try that shape too.
+inline constexpr int k_lanes = 16;
 
 struct Floats {
   float v[k_lanes];
