@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,6 +11,7 @@
 #include "control_view/engines/moved_objects.hpp"
 #include "control_view/engines/raycast_layer.hpp"
 #include "control_view/engines/raycast_rays.hpp"
+#include "control_view/engines/stopwatch.hpp"
 #include "control_view/engines/worker_threads.hpp"
 
 namespace sightline {
@@ -21,10 +21,6 @@ constexpr std::uint32_t k_packet_columns = 4;
 constexpr std::uint32_t k_packet_rows = 2;
 /// Rows a worker takes at a time.
 constexpr std::uint32_t k_strip_rows = 8;
-
-double seconds_since(std::chrono::steady_clock::time_point then) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - then).count();
-}
 
 EmbreeDevice make_device(std::uint32_t threads) {
   EmbreeDevice device(rtcNewDevice(("threads=" + std::to_string(threads)).c_str()));
@@ -75,10 +71,9 @@ class RaycastEngine final : public VisibilityEngine {
     EngineStats stats;
     Picture picture{query.size, query.size};
     if (query.window) picture = {query.window->image, query.size, query.window->x, query.window->y};
-    const auto began = std::chrono::steady_clock::now();
+    Stopwatch watch;
     for (const Eye& eye : query.eyes) trace_eye(EyeRays(eye, world_origin_m_, picture.image), picture);
-    stats.draw_s = seconds_since(began);
-    const auto traced = std::chrono::steady_clock::now();
+    stats.draw_s = watch.lap_s();
     for (Tally& tally : tallies_) {
       tally.sum.take(tally.counts);
       for (std::size_t i = 0; i < tally.counts.ids.size(); ++i) {
@@ -86,7 +81,7 @@ class RaycastEngine final : public VisibilityEngine {
       }
     }
     sum_.take(counts);
-    stats.count_s = seconds_since(traced);
+    stats.count_s = watch.lap_s();
     return stats;
   }
 

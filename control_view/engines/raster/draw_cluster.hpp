@@ -11,6 +11,7 @@ namespace sightline::raster::SIGHTLINE_LANES {
 /// A cluster's vertices on their way to the screen.
 struct ClusterVertices {
   float clip[4][k_cluster_vertices];
+  float one_over_w[k_cluster_vertices];
   float x[k_cluster_vertices], y[k_cluster_vertices], depth[k_cluster_vertices];  ///< window
   std::int32_t outside[k_cluster_vertices];  ///< bit i: beyond clip plane i
 };
@@ -40,6 +41,7 @@ inline unsigned transform(const KernelScene& scene, const Cluster& cluster, cons
       clip[row] = clip[row] + all(view.clip_from_scene[2][row]) * p[2] + all(view.clip_from_scene[3][row]);
     }
     const Floats one_over_w = all(1.0f) / clip[3];
+    store(out.one_over_w + i, one_over_w);
     store(out.x + i, fused_multiply_add(clip[0] * one_over_w, half_width, half_width));
     store(out.y + i, fused_multiply_add(clip[1] * one_over_w, half_height, half_height));
     store(out.depth + i, clip[2] * one_over_w);
@@ -177,24 +179,10 @@ class ItemDrawer {
 
   void put_uv(const Cluster& cluster, int vertex, int corner, int lane) {
     const std::size_t at = cluster.first_vertex + static_cast<std::size_t>(vertex);
-    const float one_over_w = 1.0f / clip_w(cluster, vertex);
+    const float one_over_w = vertices_.one_over_w[vertex];
     batch_.u[corner][lane] = scene_.u == nullptr ? 0.0f : scene_.u[at] * one_over_w;
     batch_.v[corner][lane] = scene_.v == nullptr ? 0.0f : scene_.v[at] * one_over_w;
     batch_.one_over_w[corner][lane] = one_over_w;
-  }
-
-  /// Of a vertex whose clip position may not have been kept.
-  [[nodiscard]] float clip_w(const Cluster& cluster, int vertex) const {
-    const std::size_t at = cluster.first_vertex + static_cast<std::size_t>(vertex);
-    const float p[3] = {scene_.x[at], scene_.y[at], scene_.z[at]};
-    float scene_p[3];
-    for (int row = 0; row < 3; ++row) {
-      scene_p[row] = placement_->columns[0][row] * p[0] + placement_->columns[1][row] * p[1] +
-                     placement_->columns[2][row] * p[2] + placement_->columns[3][row];
-    }
-    const float w = view_.clip_from_scene[0][3] * scene_p[0] + view_.clip_from_scene[1][3] * scene_p[1] +
-                    view_.clip_from_scene[2][3] * scene_p[2] + view_.clip_from_scene[3][3];
-    return w;
   }
 
   void put(const ClipVertex& vertex, int corner) {

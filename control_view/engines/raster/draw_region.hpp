@@ -84,7 +84,7 @@ class RegionDrawer {
         draw_item(scene_.items[item], box, mark);
         pixels += drawer_.blended_pixels();
       }
-      if (pixels > 0) add(object, pixels);
+      if (pixels > 0) add_count(object, pixels);
     }
   }
 
@@ -97,12 +97,7 @@ class RegionDrawer {
   RegionResult take_result() {
     for (std::uint32_t i = 0; i < result_.seen_count; ++i) {
       std::uint32_t& pixels = memory_.pixels_of_rank[memory_.seen_ranks[i]];
-      add(scene_.owners[memory_.seen_ranks[i]].object, pixels);
-      pixels = 0;
-    }
-    for (std::uint32_t i = 0; i < result_.count_count; ++i) {
-      std::uint32_t& pixels = memory_.pixels_of_object[memory_.counts[i].object];
-      memory_.counts[i].pixels = pixels;
+      add_count(scene_.owners[memory_.seen_ranks[i]].object, pixels);
       pixels = 0;
     }
     return result_;
@@ -235,10 +230,8 @@ class RegionDrawer {
     return view;
   }
 
-  void add(std::uint32_t object, std::uint32_t pixels) {
-    std::uint32_t& sum = memory_.pixels_of_object[object];
-    if (sum == 0) memory_.counts[result_.count_count++].object = object;
-    sum += pixels;
+  void add_count(std::uint32_t object, std::uint32_t pixels) {
+    memory_.counts[result_.count_count++] = {object, pixels};
   }
 
   void count_block(const std::int32_t* ranks) {

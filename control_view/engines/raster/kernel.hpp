@@ -57,8 +57,8 @@ struct KernelScene {
 };
 
 struct RegionCount {
-  std::uint32_t object = 0;
-  std::uint32_t pixels = 0;
+  std::uint32_t object;
+  std::uint32_t pixels;
 };
 
 /// What one worker draws into. The blocks lie row by row; pixels outside the region hold a depth nearer than
@@ -81,8 +81,9 @@ struct RegionMemory {
   // Each as long as there are objects.
   std::uint32_t* object_drawn_in;  ///< the round any of an object was last drawn in
   std::uint32_t* blended_candidates;
-  std::uint32_t* pixels_of_object;  ///< zero between rounds
-  RegionCount* counts;              ///< the answer, in no order
+
+  /// The answer, in no order: one entry a rank that shows and one a blended object, so several an object.
+  RegionCount* counts;
 
   std::uint32_t round = 0;         ///< another one for every call
   std::int32_t blended_draws = 0;  ///< goes on from call to call, so that marks need no clearing

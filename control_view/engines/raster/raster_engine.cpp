@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <memory>
 #include <string>
 #include <utility>
@@ -21,6 +20,7 @@
 #include "control_view/engines/raster/raster_scene.hpp"
 #include "control_view/engines/raster/region_worker.hpp"
 #include "control_view/engines/raster/strips.hpp"
+#include "control_view/engines/stopwatch.hpp"
 #include "control_view/engines/worker_threads.hpp"
 
 namespace sightline {
@@ -31,10 +31,6 @@ using raster::RasterView;
 using raster::RegionCount;
 using raster::RegionJob;
 using raster::RegionWorker;
-
-double seconds_since(std::chrono::steady_clock::time_point begin) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-}
 
 RasterView view_of(const Eye& eye, const glm::dvec3& world_origin_m, ImageSize image) {
   RasterView view;
@@ -62,7 +58,8 @@ class RasterEngine final : public VisibilityEngine {
         moved_(scene),
         sum_(scene.object_count()),
         kernel_(kernel),
-        threads_(threads) {
+        threads_(threads),
+        kernel_scene_(kernel_scene()) {
     const bool any_blended = std::any_of(scene_.has_blended.begin(), scene_.has_blended.end(),
                                          [](std::uint8_t has) { return has != 0; });
     for (std::uint32_t i = 0; i < threads_.count(); ++i) workers_.emplace_back(scene_, any_blended);
@@ -77,31 +74,26 @@ class RasterEngine final : public VisibilityEngine {
   }
 
   EngineStats count(const ViewQuery& query, PixelCounts& counts) override {
-    const auto began = std::chrono::steady_clock::now();
+    EngineStats stats;
+    Stopwatch watch;
     plan(query);
     std::size_t blocks = 0;
     for (const Task& task : tasks_) blocks = std::max(blocks, blocks_of(task.job.region));
     for (RegionWorker& worker : workers_) worker.begin(query.eyes.size(), blocks);
-    EngineStats stats;
-    stats.cull_s = seconds_since(began);
+    stats.cull_s = watch.lap_s();
 
-    const auto draw_began = std::chrono::steady_clock::now();
     std::atomic<std::size_t> next{0};
     const auto work = [&](std::uint32_t worker) {
-      for (std::size_t i = next++; i < tasks_.size(); i = next++)
-        draw(tasks_[i], workers_[worker], draw_began);
+      for (std::size_t i = next++; i < tasks_.size(); i = next++) draw(tasks_[i], workers_[worker], watch);
     };
     if (tasks_.size() == 1) {
       work(0);
     } else {
       threads_.run(work);
     }
-    stats.draw_s = seconds_since(draw_began);
+    stats.draw_s = watch.lap_s();
 
-    const auto count_began = std::chrono::steady_clock::now();
-    for (const Task& task : tasks_) {
-      if (task.strips != nullptr) task.strips->note_time(task.strip, task.time_s);
-    }
+    for (const Task& task : tasks_) task.strips->note_time(task.strip, task.time_s);
     const bool part = query.window.has_value();
     for (std::size_t eye = 0; eye < query.eyes.size(); ++eye) add_counts_of(eye, part);
     sum_.take(counts);
@@ -109,7 +101,7 @@ class RasterEngine final : public VisibilityEngine {
       stats.drawn_objects += worker.drawn_objects();
       stats.drawn_triangles += worker.drawn_triangles();
     }
-    stats.count_s = seconds_since(count_began);
+    stats.count_s = watch.lap_s();
     return stats;
   }
 
@@ -124,7 +116,6 @@ class RasterEngine final : public VisibilityEngine {
   };
 
   void plan(const ViewQuery& query) {
-    kernel_scene_ = kernel_scene();
     const ImageSize image = query.window ? query.window->image : query.size;
     const auto width = static_cast<std::int32_t>(query.size.width);
     const auto height = static_cast<std::int32_t>(query.size.height);
@@ -179,10 +170,10 @@ class RasterEngine final : public VisibilityEngine {
     return *cuts_[eye];
   }
 
-  void draw(Task& task, RegionWorker& worker, std::chrono::steady_clock::time_point all_began) {
+  void draw(Task& task, RegionWorker& worker, const Stopwatch& since_all_began) {
     worker.draw(kernel_, task.job, task.eye);
     // Since all began: a worker that wakes late is to get less.
-    task.time_s = seconds_since(all_began);
+    task.time_s = since_all_began.elapsed_s();
   }
 
   void add_counts_of(std::size_t eye, bool part) {
@@ -234,12 +225,12 @@ class RasterEngine final : public VisibilityEngine {
   CountAccumulator sum_;
   raster::DrawRegion kernel_;
   WorkerThreads threads_;
+  raster::KernelScene kernel_scene_;  ///< points into scene_ and hierarchy_, whose arrays stay where they are
   std::vector<RegionWorker> workers_;
   LastSeen<std::uint32_t> seen_;  ///< ranks
   raster::NearestFirst nearest_first_;
   std::vector<std::vector<std::uint32_t>> first_;      ///< by eye: the ranks to begin with
   std::vector<std::unique_ptr<raster::Strips>> cuts_;  ///< by eye
-  raster::KernelScene kernel_scene_{};
   std::vector<RasterView> views_;
   std::vector<Task> tasks_;
   std::uint64_t session_ = 0;

@@ -12,15 +12,13 @@ RegionWorker::RegionWorker(const RasterScene& scene, bool any_blended)
       item_cut_(scene.items.size(), 0),
       object_drawn_in_(scene.placements.size(), 0),
       blended_candidates_(scene.placements.size(), 0),
-      pixels_of_object_(scene.placements.size(), 0),
-      region_counts_(scene.placements.size()) {
+      region_counts_(scene.owners.size() + scene.placements.size()) {
   memory_.drawn_in = drawn_in_.data();
   memory_.pixels_of_rank = pixels_of_rank_.data();
   memory_.seen_ranks = seen_ranks_.data();
   memory_.item_cut = item_cut_.data();
   memory_.object_drawn_in = object_drawn_in_.data();
   memory_.blended_candidates = blended_candidates_.data();
-  memory_.pixels_of_object = pixels_of_object_.data();
   memory_.counts = region_counts_.data();
 }
 

@@ -33,7 +33,7 @@ class RegionWorker {
   std::vector<std::int32_t> rank_, blended_mark_;
   std::vector<BlockState> block_state_;
   std::vector<std::uint32_t> drawn_in_, pixels_of_rank_, seen_ranks_, item_cut_;
-  std::vector<std::uint32_t> object_drawn_in_, blended_candidates_, pixels_of_object_;
+  std::vector<std::uint32_t> object_drawn_in_, blended_candidates_;
   std::vector<RegionCount> region_counts_;
   RegionMemory memory_{};
   std::vector<std::vector<RegionCount>> counts_;

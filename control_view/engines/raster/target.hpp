@@ -66,12 +66,8 @@ class Target {
     for (int by = bottom / k_block; by <= top / k_block; ++by) {
       for (int bx = left / k_block; bx <= right / k_block; ++bx) {
         const int block = by * blocks_x + bx;
-        if (far_[block] > nearest) continue;
-        if (state_[block] == BlockState::untouched) return false;
-        if (state_[block] == BlockState::dirty) {
-          find_far(block);
-          if (far_[block] > nearest) continue;
-        }
+        if (hides_block(block, nearest)) continue;
+        if (untouched(block)) return false;
         const int in_left = left - bx * k_block, in_right = right - bx * k_block;
         const int in_bottom = bottom - by * k_block, in_top = top - by * k_block;
         if (!hides_in_block(block, in_left, in_bottom, in_right, in_top, nearest)) return false;
