@@ -50,8 +50,8 @@ enum class GlKind {
 [[nodiscard]] EngineOptions resolved(EngineOptions options);
 
 /// Makes the engine that `wanted` names. For `auto`: with a counter named, the item buffer, which alone has
-/// counters; else the fastest of exact_candidates over sample_views, measured where there is more than one.
-/// Throws what make_engine throws.
+/// counters; else the fastest of exact_candidates over sample_views. A single one is measured too: its line
+/// in the log says what to expect, and its first answer is behind it. Throws what make_engine throws.
 [[nodiscard]] ChosenEngine choose_engine(const Scene& scene, const EngineOptions& wanted, ImageSize size,
                                          const Clock& clock);
 

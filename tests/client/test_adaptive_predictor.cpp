@@ -12,10 +12,13 @@
 #include "common/error.hpp"
 #include "common/statistics.hpp"
 #include "main_view/client/motion_predictor.hpp"
+#include "tests/client/predictor_options.hpp"
 #include "tests/common/test_scenes.hpp"
 
 namespace sightline {
 namespace {
+
+using testing::fixed_predictor;
 
 constexpr double k_rate_hz = 60.0;
 constexpr double k_step_s = 1.0 / k_rate_hz;
@@ -27,14 +30,6 @@ glm::dquat turned(double angle_rad, const glm::dvec3& axis = {0.0, 1.0, 0.0}) {
 CullingOptions adaptive_options() {
   CullingOptions options;
   options.predictor = PredictorKind::adaptive;
-  return options;
-}
-
-CullingOptions fixed(int order, int window) {
-  CullingOptions options;
-  options.predictor = PredictorKind::fixed;
-  options.predictor_order = order;
-  options.predictor_window = window;
   return options;
 }
 
@@ -141,7 +136,7 @@ TEST(AdaptivePredictor, LearnsToFollowASteadyAcceleration) {
       },
       6.0);
   const Errors adaptive = errors_on(samples, 10, adaptive_options(), 240);
-  const Errors steady = errors_on(samples, 10, fixed(1, 2), 240);
+  const Errors steady = errors_on(samples, 10, fixed_predictor(1, 2), 240);
   EXPECT_LT(adaptive.position_m, 0.1 * steady.position_m);
   EXPECT_LT(adaptive.rotation_rad, 0.1 * steady.rotation_rad);
 }
@@ -158,7 +153,7 @@ TEST(AdaptivePredictor, KeepsAStillHeadWithNoiseWhereItIs) {
   for (const std::size_t frames : {1u, 5u, 20u}) {
     const Errors errors = errors_on(samples, frames, adaptive_options(), 1200);
     EXPECT_LT(errors.position_m, 0.0023 * 1.1) << frames;
-    EXPECT_GT(errors_on(samples, frames, fixed(1, 2), 1200).position_m, errors.position_m);
+    EXPECT_GT(errors_on(samples, frames, fixed_predictor(1, 2), 1200).position_m, errors.position_m);
     EXPECT_GE(errors.coverage, 0.99);
     EXPECT_LT(errors.region_m, 0.02);
   }
@@ -377,7 +372,7 @@ TEST(AdaptivePredictor, BeatsEachFixedChoiceOnAMixtureOfMotions) {
   for (const std::size_t frames : {5u, 10u, 20u}) {
     const Errors adaptive = errors_on(mixture, frames);
     for (const auto& [order, window] : {std::pair{0, 1}, {1, 2}, {1, 5}, {2, 3}, {2, 8}, {2, 20}}) {
-      const Errors errors = errors_on(mixture, frames, fixed(order, window));
+      const Errors errors = errors_on(mixture, frames, fixed_predictor(order, window));
       EXPECT_LT(adaptive.position_m, errors.position_m) << frames << ": " << order << " over " << window;
       EXPECT_LT(adaptive.rotation_rad, errors.rotation_rad) << frames << ": " << order << " over " << window;
     }
@@ -409,8 +404,9 @@ TEST(AdaptivePredictor, BeatsTheFixedOnesOnRecordedMotionAndHoldsItInItsRegion) 
     for (int i = 0; from_s + i * k_step_s <= trace.samples[best_end - 1].time_s; ++i)
       samples.push_back({i * k_step_s, trace.at(from_s + i * k_step_s)});
     const Errors adaptive = errors_on(samples, k_frames, adaptive_options(), 20);
-    const Errors velocity = errors_on(samples, k_frames, fixed(1, 2), 20);
-    against_hold += std::log(adaptive.position_m / errors_on(samples, k_frames, fixed(0, 1), 20).position_m);
+    const Errors velocity = errors_on(samples, k_frames, fixed_predictor(1, 2), 20);
+    against_hold +=
+        std::log(adaptive.position_m / errors_on(samples, k_frames, fixed_predictor(0, 1), 20).position_m);
     against_velocity += std::log(adaptive.position_m / velocity.position_m);
     turn_against_velocity += std::log(adaptive.rotation_rad / velocity.rotation_rad);
     EXPECT_GE(adaptive.coverage, 0.995) << file;

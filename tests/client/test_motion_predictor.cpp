@@ -5,20 +5,15 @@
 
 #include "common/error.hpp"
 #include "main_view/client/motion_predictor.hpp"
+#include "tests/client/predictor_options.hpp"
 #include "tests/client/reference_fit.hpp"
 
 namespace sightline {
 namespace {
 
-constexpr double k_rate_hz = 60.0;
+using testing::fixed_predictor;
 
-CullingOptions with(int order, int window) {
-  CullingOptions options;
-  options.predictor = PredictorKind::fixed;
-  options.predictor_order = order;
-  options.predictor_window = window;
-  return options;
-}
+constexpr double k_rate_hz = 60.0;
 
 glm::dquat yaw(double angle_rad) {
   return {std::cos(angle_rad / 2.0), 0.0, std::sin(angle_rad / 2.0), 0.0};
@@ -55,7 +50,7 @@ TEST(MotionPredictor, PredictsAPolynomialOfItsOrderToRounding) {
   std::mt19937 random(2);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   for (int order = 0; order <= k_max_predictor_order; ++order) {
-    const CullingOptions options = with(order, 20);
+    const CullingOptions options = fixed_predictor(order, 20);
     PoseHistory history(options);
     MotionPredictor predictor(options);
     glm::dvec3 coefficient[5];
@@ -76,7 +71,7 @@ TEST(MotionPredictor, PredictsAPolynomialOfItsOrderToRounding) {
 }
 
 TEST(MotionPredictor, DoesNotPredictAPolynomialAboveItsOrder) {
-  const CullingOptions options = with(1, 20);
+  const CullingOptions options = fixed_predictor(1, 20);
   PoseHistory history(options);
   MotionPredictor predictor(options);
   for (int i = 0; i < 20; ++i)
@@ -149,7 +144,7 @@ TEST(MotionPredictor, WorksFromTheFirstPoseOn) {
 
 TEST(MotionPredictor, AnnouncesTheErrorsItMadeBefore) {
   // Order 0 over 1 holds the last pose; at a constant speed its error is known.
-  const CullingOptions options = with(0, 1);
+  const CullingOptions options = fixed_predictor(0, 1);
   PoseHistory history(options);
   MotionPredictor predictor(options);
   PredictedPose predicted;
@@ -165,7 +160,7 @@ TEST(MotionPredictor, AnnouncesTheErrorsItMadeBefore) {
 }
 
 TEST(MotionPredictor, ForgetsOldErrors) {
-  const CullingOptions options = with(1, 2);
+  const CullingOptions options = fixed_predictor(1, 2);
   PoseHistory history(options);
   MotionPredictor predictor(options);
   PredictedPose predicted;
