@@ -20,6 +20,15 @@ struct Aabb {
   void add(const Aabb& other) noexcept;
 };
 
+/// Axis-aligned box of the world frame in double, metres, for what must stay sharp far from the origin.
+/// Never empty: min <= max on every axis.
+struct WorldBox {
+  glm::dvec3 min{0.0};
+  glm::dvec3 max{0.0};
+
+  bool operator==(const WorldBox&) const = default;
+};
+
 /// Smallest float box around the transformed box.
 /// Conservative: computed in double and rounded outwards, so it contains every transformed point of `box`
 /// even where the vertex shader's single precision lands slightly outside the exact result

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <string>
 #include <string_view>
 
@@ -70,6 +71,19 @@ Pose CameraPath::at(double time_s) const {
   const double share = (time_s - a.time_s) / (b.time_s - a.time_s);
   return {glm::mix(a.pose.position_m, b.pose.position_m, share),
           glm::normalize(glm::slerp(a.pose.world_from_camera, b.pose.world_from_camera, share))};
+}
+
+std::vector<CameraPath> pieces_between_gaps(const CameraPath& path, double longest_gap_s) {
+  std::vector<CameraPath> pieces;
+  for (auto begin = path.samples.begin(); begin != path.samples.end();) {
+    const auto pause = std::adjacent_find(
+        begin, path.samples.end(),
+        [&](const TimedPose& a, const TimedPose& b) { return b.time_s - a.time_s > longest_gap_s; });
+    const auto end = pause == path.samples.end() ? pause : std::next(pause);
+    pieces.push_back({{begin, end}});
+    begin = end;
+  }
+  return pieces;
 }
 
 CameraPath read_camera_path(const std::filesystem::path& file) {

@@ -17,6 +17,10 @@ struct CameraPath {
   [[nodiscard]] Pose at(double time_s) const;
 };
 
+/// The stretches of a recording between pauses longer than `longest_gap_s`, in order, each with the times of
+/// the whole.
+[[nodiscard]] std::vector<CameraPath> pieces_between_gaps(const CameraPath& path, double longest_gap_s);
+
 /// Reads a CSV with the header `t,px,py,pz,qw,qx,qy,qz` (seconds, metres, camera to world).
 /// Quaternions are normalised. Throws InputError naming the file and the line: a missing file, a missing or
 /// extra column, a value that is not a finite number, a time that is negative, does not increase or lies

@@ -56,6 +56,13 @@ void widen_depth(glm::dmat4& matrix, double corner_tangent, double angle_rad) {
   matrix[3][2] = -2.0 * wide_far_m * wide_near_m / (wide_far_m - wide_near_m);
 }
 
+/// Of the form that widening knows: axes not mixed, divided by the distance along the view.
+bool is_upright_perspective(const glm::dmat4& m) noexcept {
+  const bool perspective = m[0][3] == 0.0 && m[1][3] == 0.0 && m[2][3] == -1.0 && m[3][3] == 0.0;
+  const bool upright = m[1][0] == 0.0 && m[0][1] == 0.0 && m[3][0] == 0.0 && m[3][1] == 0.0;
+  return perspective && upright && m[0][0] > 0.0 && m[1][1] > 0.0;
+}
+
 }  // namespace
 
 std::optional<ImageSize> parse_image_size(std::string_view text) {
@@ -73,9 +80,7 @@ glm::dmat4 clip_from_camera(const Perspective& perspective, double aspect) noexc
 
 glm::dmat4 widened(const glm::dmat4& clip_from_camera, double angle_rad) noexcept {
   const glm::dmat4& m = clip_from_camera;
-  const bool perspective = m[0][3] == 0.0 && m[1][3] == 0.0 && m[2][3] == -1.0 && m[3][3] == 0.0;
-  const bool upright = m[1][0] == 0.0 && m[0][1] == 0.0 && m[3][0] == 0.0 && m[3][1] == 0.0;
-  if (!perspective || !upright || !(m[0][0] > 0.0) || !(m[1][1] > 0.0) || !(angle_rad > 0.0)) return m;
+  if (!is_upright_perspective(m) || !(angle_rad > 0.0)) return m;
 
   // Normalised x is m00 * tangent - m20, so the edges at -1 and +1 have these tangents (positive outwards).
   const double right = (1.0 + m[2][0]) / m[0][0];
@@ -96,6 +101,31 @@ glm::dmat4 widened(const glm::dmat4& clip_from_camera, double angle_rad) noexcep
   wide[2][1] = (wide_top - wide_bottom) / (wide_top + wide_bottom);
   widen_depth(wide, std::hypot(widest_x, widest_y), angle_rad);
   return wide;
+}
+
+double near_reach_m(const glm::dmat4& clip_from_camera) noexcept {
+  const glm::dmat4& m = clip_from_camera;
+  if (!is_upright_perspective(m)) return 0.0;
+  const double near_m = m[3][2] / (m[2][2] - 1.0);
+  if (!(near_m > 0.0)) return 0.0;
+  const double x = (1.0 + std::abs(m[2][0])) / m[0][0], y = (1.0 + std::abs(m[2][1])) / m[1][1];
+  return near_m * std::sqrt(1.0 + x * x + y * y);
+}
+
+double nearest_kept_m(const glm::dmat4& clip_from_camera, double angle_rad) noexcept {
+  // A turned eye's near plane reaches no farther out than its corners, wherever it is turned.
+  return angle_rad > 0.0 ? near_reach_m(clip_from_camera) : 0.0;
+}
+
+void move_near_plane(glm::dmat4& clip_from_camera, double near_m) noexcept {
+  glm::dmat4& m = clip_from_camera;
+  if (!is_upright_perspective(m)) return;
+  const double old_near_m = m[3][2] / (m[2][2] - 1.0);
+  const bool infinite = std::abs(m[2][2] + 1.0) < 1e-12;
+  const double far_m = infinite ? 0.0 : m[3][2] / (m[2][2] + 1.0);
+  if (!(near_m > old_near_m) || !(infinite || far_m > 2.0 * near_m)) return;
+  m[2][2] = infinite ? -1.0 : -(far_m + near_m) / (far_m - near_m);
+  m[3][2] = infinite ? -2.0 * near_m : -2.0 * far_m * near_m / (far_m - near_m);
 }
 
 StereoEyes stereo_eyes(const Pose& head, double separation_m) noexcept {

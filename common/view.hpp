@@ -56,6 +56,17 @@ struct Perspective {
 /// corners come closer and its far corners go further along the unturned axis.
 [[nodiscard]] glm::dmat4 widened(const glm::dmat4& clip_from_camera, double angle_rad) noexcept;
 
+/// Metres along the view's axis: nothing beyond is cut away by the near plane of an eye that is turned by up
+/// to `angle_rad` against this one and sees no wider. 0 for a projection that widened() does not know.
+[[nodiscard]] double nearest_kept_m(const glm::dmat4& clip_from_camera, double angle_rad) noexcept;
+
+/// Moves the near plane of a perspective projection to `near_m`, where that is farther and before the far
+/// plane.
+void move_near_plane(glm::dmat4& clip_from_camera, double near_m) noexcept;
+
+/// Farthest that a point cut away by the near plane can be from the eye, metres: the near plane's corners.
+[[nodiscard]] double near_reach_m(const glm::dmat4& clip_from_camera) noexcept;
+
 /// The two eyes of a head pose: `separation_m` apart along the camera's X axis, parallel.
 struct StereoEyes {
   Pose left;
