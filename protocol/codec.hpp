@@ -16,7 +16,7 @@ using Bytes = std::vector<std::byte>;
 struct DecodeLimits {
   std::size_t max_frame_bytes = 64u << 20;
   std::size_t max_text_bytes = 1024;
-  std::size_t max_moves = 1u << 20;
+  std::size_t max_moves = 1u << 20;  ///< and boxed objects, and changes of presence
 };
 
 /// Why a frame was refused, one line.

@@ -88,6 +88,19 @@ class Reader {
             ObjectMove{ObjectId{move->id()}, matrix<glm::dmat4x3>(move->world_from_object().m())});
       }
     }
+    if (within(from.boxed(), limits_.max_moves, "boxed")) {
+      message.boxed.reserve(from.boxed()->size());
+      for (const wire::Box* box : *from.boxed()) {
+        message.boxed.push_back(BoxedObject{
+            ObjectId{box->id()},
+            {{box->min_x(), box->min_y(), box->min_z()}, {box->max_x(), box->max_y(), box->max_z()}}});
+      }
+    }
+    if (within(from.presence(), limits_.max_moves, "presence")) {
+      message.presence.reserve(from.presence()->size());
+      for (const wire::Presence* presence : *from.presence())
+        message.presence.push_back(ObjectPresence{ObjectId{presence->id()}, presence->present()});
+    }
     return message;
   }
 
@@ -101,6 +114,9 @@ class Reader {
     message.base_seq = from.base_seq();
     message.visible_count = from.visible_count();
     if (from.bitmap() != nullptr) message.bitmap.assign(from.bitmap()->begin(), from.bitmap()->end());
+    if (from.extents_of() != nullptr)
+      message.extents_of.assign(from.extents_of()->begin(), from.extents_of()->end());
+    if (from.extents() != nullptr) message.extents.assign(from.extents()->begin(), from.extents()->end());
     if (const wire::StageTimes* times = from.times()) {
       message.times = StageTimes{times->queue_s(), times->cull_s(),   times->draw_s(),
                                  times->count_s(), times->filter_s(), times->encode_s()};

@@ -37,6 +37,15 @@ wire::Move to_wire(const ObjectMove& move) {
   return {index_of(move.id), matrix_to_wire<wire::Matrix4x3, 12>(move.world_from_object)};
 }
 
+wire::Box to_wire(const BoxedObject& boxed) {
+  const auto& [low, high] = boxed.world_bounds;
+  return {index_of(boxed.id), low.x, low.y, low.z, high.x, high.y, high.z};
+}
+
+wire::Presence to_wire(const ObjectPresence& presence) {
+  return {index_of(presence.id), presence.present};
+}
+
 /// An empty text, list or size is left out: its field then reads as empty, and the frame is shorter.
 Offset<flatbuffers::String> text_to_wire(FlatBufferBuilder& builder, const std::string& text) {
   if (text.empty()) return 0;
@@ -81,10 +90,12 @@ Offset<void> body_to_wire(FlatBufferBuilder& builder, const Refusal& message) {
 Offset<void> body_to_wire(FlatBufferBuilder& builder, const ViewRequest& message) {
   const auto eyes = list_to_wire<wire::Eye>(builder, message.eyes);
   const auto moves = list_to_wire<wire::Move>(builder, message.moves);
+  const auto boxed = list_to_wire<wire::Box>(builder, message.boxed);
+  const auto presence = list_to_wire<wire::Presence>(builder, message.presence);
   const wire::ImageSize main_size = to_wire(message.main_size);
   return wire::CreateViewRequest(builder, message.session_id, message.request_seq, message.for_time_s, eyes,
                                  &main_size, message.rotation_error_rad, message.position_error_m,
-                                 message.acked_set_seq, message.reset_filter, moves)
+                                 message.acked_set_seq, message.reset_filter, moves, boxed, presence)
       .Union();
 }
 
@@ -94,9 +105,14 @@ Offset<void> body_to_wire(FlatBufferBuilder& builder, const VisibleSetFrame& mes
   const auto wire_times = wire::CreateStageTimes(builder, times.queue_s, times.cull_s, times.draw_s,
                                                  times.count_s, times.filter_s, times.encode_s);
   const wire::Digest digest = to_wire(message.scene_digest);
+  const auto bytes_to_wire = [&](const std::vector<std::uint8_t>& bytes) {
+    return bytes.empty() ? 0 : builder.CreateVector(bytes);
+  };
+  const auto extents_of = bytes_to_wire(message.extents_of);
+  const auto extents = bytes_to_wire(message.extents);
   return wire::CreateVisibleSet(builder, message.session_id, message.set_seq, message.request_seq,
                                 message.for_time_s, &digest, message.base_seq, message.visible_count, bitmap,
-                                wire_times, message.drawn_objects)
+                                wire_times, message.drawn_objects, extents_of, extents)
       .Union();
 }
 

@@ -102,6 +102,30 @@ Fault fault_of_moves(const std::vector<ObjectMove>& moves) {
   return "moves: object " + std::to_string(index_of(*twice)) + " twice";
 }
 
+/// Ascending, each once: a list that a client may choose freely is never sorted here.
+template <typename Entry>
+Fault fault_of_ids(const std::vector<Entry>& entries, const std::string& field) {
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    if (index_of(entries[i].id) >= k_max_object_count) return field + ": object id too large";
+    if (i > 0 && entries[i].id <= entries[i - 1].id) return field + ": object ids not ascending";
+  }
+  return {};
+}
+
+Fault fault_of_boxed(const std::vector<BoxedObject>& boxed) {
+  for (const BoxedObject& object : boxed) {
+    const auto& [low, high] = object.world_bounds;
+    for (int axis = 0; axis < 3; ++axis) {
+      // False for NaN, each of them.
+      if (low[axis] >= -k_max_matrix_entry && low[axis] <= high[axis] && high[axis] <= k_max_matrix_entry)
+        continue;
+      return "boxed: box of object " + std::to_string(index_of(object.id)) +
+             " not finite, too large or with min above max";
+    }
+  }
+  return fault_of_ids(boxed, "boxed");
+}
+
 Fault fault_of(const Hello&) {
   return {};
 }
@@ -135,7 +159,9 @@ Fault fault_of(const ViewRequest& message) {
   if (!is_duration(message.rotation_error_rad)) return "rotation_error_rad: negative or not finite";
   if (!is_duration(message.position_error_m)) return "position_error_m: negative or not finite";
   if (Fault fault = fault_of_eyes(message.eyes)) return fault;
-  return fault_of_moves(message.moves);
+  if (Fault fault = fault_of_moves(message.moves)) return fault;
+  if (Fault fault = fault_of_boxed(message.boxed)) return fault;
+  return fault_of_ids(message.presence, "presence");
 }
 
 Fault fault_of(const VisibleSetFrame& message) {

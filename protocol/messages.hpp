@@ -8,6 +8,7 @@
 
 #include <glm/mat4x3.hpp>
 
+#include "common/bounds.hpp"
 #include "common/object_id.hpp"
 #include "common/scene_digest.hpp"
 #include "common/view.hpp"
@@ -75,6 +76,23 @@ struct ObjectMove {
   bool operator==(const ObjectMove&) const = default;
 };
 
+/// An object on the move: `world_bounds` holds it while the answer may be used. It hides nothing in the
+/// answer and is in the visible set unless the whole box is certainly hidden.
+struct BoxedObject {
+  ObjectId id{};
+  WorldBox world_bounds;
+
+  bool operator==(const BoxedObject&) const = default;
+};
+
+/// Whether an object is there at all: one that is not is not drawn and hides nothing. At first all are.
+struct ObjectPresence {
+  ObjectId id{};
+  bool present = true;
+
+  bool operator==(const ObjectPresence&) const = default;
+};
+
 /// Client to daemon: what will be visible from here?
 struct ViewRequest {
   std::uint64_t session_id = 0;
@@ -87,6 +105,8 @@ struct ViewRequest {
   std::uint64_t acked_set_seq = 0;  ///< newest set held, base for a delta; 0 for none: send a keyframe
   bool reset_filter = false;        ///< the camera jumped: older counts say nothing about this view
   std::vector<ObjectMove> moves;    ///< every move since the last one acknowledged by a set
+  std::vector<BoxedObject> boxed;   ///< objects on the move, for this request alone; ascending ids
+  std::vector<ObjectPresence> presence;  ///< every change since the last one acknowledged; ascending ids
 
   bool operator==(const ViewRequest&) const = default;
 };
@@ -116,6 +136,10 @@ struct VisibleSetFrame {
   std::uint64_t base_seq = 0;        ///< 0: keyframe
   std::uint32_t visible_count = 0;   ///< objects in the whole set, to check a delta by
   std::vector<std::uint8_t> bitmap;  ///< CRoaring portable format, ids < object count of the scene
+  /// Objects of the set whose extents follow, CRoaring portable format. The others' are as in the base; of an
+  /// object that has none there nothing is said: it may be seen anywhere.
+  std::vector<std::uint8_t> extents_of;
+  std::vector<std::uint8_t> extents;  ///< five bytes each: see DirectionExtent, in the order of its members
   StageTimes times;
   std::uint32_t drawn_objects = 0;  ///< objects the engine drew for it
 

@@ -131,6 +131,39 @@ TEST(ViewRequestChecks, RefuseAnObjectThatMovesTwice) {
   EXPECT_THAT(refusal({0xFFFFFFFF}), HasSubstr("id too large"));
 }
 
+TEST(ViewRequestChecks, RefuseBoxesThatHoldNothingAndNumbersThatAreNone) {
+  const auto refusal = [](const std::function<void(BoxedObject&)>& change) {
+    return request_refusal([&](ViewRequest& r) {
+      r.boxed = {{ObjectId{2}, {glm::dvec3(0.0), glm::dvec3(1.0)}}, {ObjectId{4}, {}}};
+      change(r.boxed[0]);
+    });
+  };
+  const auto bad_box = HasSubstr("boxed: box of object 2");
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double bad : {k_nan, -k_infinity, k_infinity, 1e13, -1e13}) {
+      EXPECT_THAT(refusal([=](BoxedObject& b) { b.world_bounds.min[axis] = bad; }), bad_box);
+      EXPECT_THAT(refusal([=](BoxedObject& b) { b.world_bounds.max[axis] = bad; }), bad_box);
+    }
+    EXPECT_THAT(refusal([=](BoxedObject& b) { b.world_bounds.min[axis] = 1.0000001; }), bad_box);
+    EXPECT_THAT(refusal([=](BoxedObject& b) { b.world_bounds.min[axis] = 1.0; }), "accepted");
+  }
+  EXPECT_THAT(refusal([](BoxedObject& b) { b.id = ObjectId{4}; }),
+              HasSubstr("boxed: object ids not ascending"));
+  EXPECT_THAT(refusal([](BoxedObject& b) { b.id = ObjectId{5}; }),
+              HasSubstr("boxed: object ids not ascending"));
+  EXPECT_THAT(refusal([](BoxedObject& b) { b.id = ObjectId{0xFFFFFFFF}; }), HasSubstr("id too large"));
+}
+
+TEST(ViewRequestChecks, RefuseAnObjectThatBothAppearsAndVanishes) {
+  const auto refusal = [](std::vector<ObjectPresence> presence) {
+    return request_refusal([&](ViewRequest& r) { r.presence = std::move(presence); });
+  };
+  EXPECT_EQ(refusal({{ObjectId{1}, true}, {ObjectId{2}, false}}), "accepted");
+  EXPECT_THAT(refusal({{ObjectId{1}, true}, {ObjectId{1}, false}}), HasSubstr("presence: object ids"));
+  EXPECT_THAT(refusal({{ObjectId{2}, true}, {ObjectId{1}, true}}), HasSubstr("presence: object ids"));
+  EXPECT_THAT(refusal({{ObjectId{0xFFFFFFFF}, true}}), HasSubstr("presence: object id too large"));
+}
+
 TEST(ViewRequestChecks, RefuseSequenceNumberZero) {
   EXPECT_THAT(request_refusal([](ViewRequest& r) { r.request_seq = 0; }), HasSubstr("request_seq"));
 }

@@ -61,6 +61,16 @@ ViewRequest random_request(std::mt19937_64& random) {
     message.moves.push_back({id, random_placement(random)});
   }
   std::shuffle(message.moves.begin(), message.moves.end(), random);
+  for (const ObjectId id : random_ids(random() % 20, 1000, random)) {
+    BoxedObject boxed{id, {}};
+    for (int axis = 0; axis < 3; ++axis) {
+      boxed.world_bounds.min[axis] = random_real(random, -1e7, 1e7);
+      boxed.world_bounds.max[axis] = boxed.world_bounds.min[axis] + random_real(random, 0.0, 100.0);
+    }
+    message.boxed.push_back(boxed);
+  }
+  for (const ObjectId id : random_ids(random() % 20, 1000, random))
+    message.presence.push_back({id, random() % 2 == 0});
   return message;
 }
 
@@ -75,6 +85,15 @@ VisibleSetFrame random_frame(std::mt19937_64& random) {
   const VisibleSet set(random_ids(random() % 300, 200'000, random));
   message.visible_count = static_cast<std::uint32_t>(set.size());
   message.bitmap = encode_keyframe(set);
+  if (random() % 2 == 0) {
+    std::vector<ObjectId> said;
+    for (const ObjectId id : set.to_ids()) {
+      if (random() % 2 == 0) said.push_back(id);
+    }
+    message.extents_of = encode_keyframe(VisibleSet(said));
+    for (std::size_t bytes = 5 * said.size(); bytes > 0; --bytes)
+      message.extents.push_back(random_integer<std::uint8_t>(random));
+  }
   const auto time_s = [&] { return random_real(random, 0.0, 1.0); };
   message.times = {time_s(), time_s(), time_s(), time_s(), time_s(), time_s()};
   message.drawn_objects = random_integer<std::uint32_t>(random);
@@ -134,6 +153,8 @@ std::vector<NamedMessage> golden_messages() {
   request.acked_set_seq = 4;
   request.reset_filter = true;
   request.moves = {{ObjectId{3}, glm::dmat4x3(1, 0, 0, 0, 1, 0, 0, 0, 1, 10, 20, 30)}};
+  request.boxed = {{ObjectId{5}, {{-1.5, 0.0, 2.0}, {1.5, 2.0, 4.25}}}};
+  request.presence = {{ObjectId{6}, false}, {ObjectId{9}, true}};
 
   VisibleSetFrame keyframe = golden_frame();
   keyframe.set_seq = 4;
