@@ -68,4 +68,21 @@ bool apply_moves(SceneEdits& edits, std::vector<ObjectMove> moves) {
   return jumped;
 }
 
+bool apply_presence(SceneEdits& edits, std::span<const ObjectPresence> presence) {
+  if (presence.empty()) return false;
+  std::vector<ObjectId> hidden;
+  hidden.reserve(edits.hidden.size() + presence.size());
+  auto known = edits.hidden.begin();
+  for (const ObjectPresence& change : presence) {
+    for (; known != edits.hidden.end() && *known < change.id; ++known) hidden.push_back(*known);
+    if (known != edits.hidden.end() && *known == change.id) ++known;
+    if (!change.present) hidden.push_back(change.id);
+  }
+  hidden.insert(hidden.end(), known, edits.hidden.end());
+  if (hidden == edits.hidden) return false;
+  edits.hidden = std::move(hidden);
+  ++edits.version;
+  return true;
+}
+
 }  // namespace sightline

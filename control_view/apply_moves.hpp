@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "control_view/engine.hpp"
@@ -13,5 +14,9 @@ namespace sightline {
 /// counts from before say little about what it covers now. Smaller steps are motion, which the low-pass
 /// filter is for.
 bool apply_moves(SceneEdits& edits, std::vector<ObjectMove> moves);
+
+/// Likewise for objects that vanish or appear. Requires ascending ids, each once, as the decoder grants.
+/// Returns whether anything changed.
+bool apply_presence(SceneEdits& edits, std::span<const ObjectPresence> presence);
 
 }  // namespace sightline

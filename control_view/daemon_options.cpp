@@ -117,8 +117,13 @@ DaemonOptions preset_options(std::string_view name) {
   DaemonOptions options;
   if (name == "default") return options;
   if (name == "avango") {
+    // Each named here, so that a better default changes nothing of it.
     options.preset = name;
+    options.filter = 8;
+    options.threshold = 0.0;
     options.refine = false;
+    options.open = false;
+    options.extents = false;
     return options;
   }
   throw InputError("--preset must be avango or default, not '" + std::string(name) + "'");

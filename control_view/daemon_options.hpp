@@ -22,7 +22,9 @@ struct DaemonOptions {
   EngineOptions engine{.engine = "auto", .counter = ""};  ///< an empty counter is the engine's first
   std::uint32_t filter = 8;                               ///< answers the low-pass filter averages
   double threshold = 0.0;                                 ///< pixels of the control image, mean
-  bool refine = true;  ///< sweep the main image while the camera stands still
+  bool refine = true;   ///< sweep the main image while the camera stands still
+  bool open = true;     ///< report also what may show between two samples or from where the camera may be
+  bool extents = true;  ///< say in which directions each object was seen
   std::uint32_t max_sessions = 16;
   double control_rate_hz = 0.0;  ///< answers a second at most, 0: no limit
   double silence_limit_s = 5.0;
@@ -48,8 +50,9 @@ struct OptionField {
 void set_option(DaemonOptions& options, std::string_view name, const std::string& text,
                 const std::string& where);
 
-/// Settings that belong together: "default", or "avango" for the paper's pipeline as it is (no still-view
-/// sweep). Throws InputError for another name.
+/// Settings that belong together: "default", or "avango" for the paper's pipeline as it is (mean over eight
+/// answers, what was sampled and no more, no still-view sweep); the client has its own part,
+/// culling_options_of_preset. Throws InputError for another name.
 [[nodiscard]] DaemonOptions preset_options(std::string_view name);
 
 }  // namespace sightline

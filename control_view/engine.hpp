@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "common/direction_extent.hpp"
 #include "common/object_id.hpp"
 #include "common/scene/scene.hpp"
 #include "common/view.hpp"
@@ -16,18 +17,45 @@
 
 namespace sightline {
 
+/// Objects that a view did not show but cannot be said to hide: see ViewDoubt. Sparse, ids ascending.
+struct OpenObjects {
+  std::vector<ObjectId> ids;
+  std::vector<DirectionExtent> extents;  ///< of each, where it may show
+
+  void clear() noexcept {
+    ids.clear();
+    extents.clear();
+  }
+};
+
 /// Visible pixels per object, sparse: `ids` ascending, `pixels[i]` > 0 belongs to `ids[i]`.
 /// Over several eyes the pixels are added up. A pixel counts for an opaque object that owns it in the item
 /// buffer, and for every blended object with a fragment in front of the opaque depth there.
 struct PixelCounts {
   std::vector<ObjectId> ids;
   std::vector<std::uint32_t> pixels;
+  /// In which directions each was seen; empty where the engine does not say.
+  std::vector<DirectionExtent> extents{};
 
   void clear() noexcept {
     ids.clear();
     pixels.clear();
+    extents.clear();
+    open.clear();
   }
-  bool operator==(const PixelCounts&) const = default;
+  OpenObjects open{};  ///< where the query says how far it may be off
+
+  /// Counts alone: what engines have to agree in.
+  bool operator==(const PixelCounts& other) const { return ids == other.ids && pixels == other.pixels; }
+};
+
+/// How far a view may be off: it is asked for one viewpoint and one sample a pixel, and its answer is to
+/// serve for others.
+struct ViewDoubt {
+  double position_m = 0.0;  ///< the eye may be this far away
+  double sample_px = 1.0;   ///< what lies between two samples of an edge
+  /// Whatever comes this near to an eye is open: the client's near plane may cut it, or what hides it, away.
+  double near_reach_m = 0.0;
 };
 
 /// A rectangle of a larger image, pixels from its lower left corner: what is drawn equals that part of the
@@ -43,6 +71,11 @@ struct ViewQuery {
   std::span<const Eye> eyes;          ///< world frame, already widened
   ImageSize size;                     ///< of the item buffer, pixels per eye
   std::optional<ImageWindow> window;  ///< draw just this part, `size` large, of a larger image
+  /// Ascending ids. Drawn by nobody, so they hide nothing wherever the edits have them; each is reported (one
+  /// pixel is enough) unless its box is certainly hidden by the finished depth or outside the view.
+  std::span<const BoxedObject> boxed{};
+  /// Find the open objects too. Engines that cannot leave them empty.
+  std::optional<ViewDoubt> doubt{};
 };
 
 /// What one answer cost and what it drew.
@@ -59,7 +92,8 @@ struct EngineStats {
 struct SceneEdits {
   std::uint64_t owner = 0;  ///< session
   std::uint64_t version = 0;
-  std::vector<ObjectMove> moves;  ///< one an object at most, ascending ids
+  std::vector<ObjectMove> moves;   ///< one an object at most, ascending ids
+  std::vector<ObjectId> hidden{};  ///< not there: never drawn, never reported; ascending
 };
 
 /// Turns (scene state, eyes, resolution) into a count of visible pixels per object.

@@ -1,7 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
+
+#include <glm/vec3.hpp>
 
 #include "control_view/pixel_sums.hpp"
 
@@ -22,17 +25,28 @@ class LowPassFilter {
   /// Requires 1 <= length <= k_max_length.
   explicit LowPassFilter(std::uint32_t length);
 
-  void add(const PixelCounts& counts);
+  /// `eye_m`: from where, world frame; extents of other answers are told from there.
+  void add(const PixelCounts& counts, const glm::dvec3& eye_m = {});
   /// Forgets every answer; keeps the memory.
   void reset() noexcept;
 
   /// Of the answers held; empty before the first. Valid until the next add() or reset().
   [[nodiscard]] MeanPixels means() const noexcept;
+  /// Replaces `extents` by one for each of the ascending `ids`: the directions in which any of the answers
+  /// held saw it, as they may be from `eye_m`. Anywhere for an object that none of them saw, or that one saw
+  /// without saying where.
+  void extents_of(std::span<const ObjectId> ids, const glm::dvec3& eye_m,
+                  std::vector<DirectionExtent>& extents) const;
   [[nodiscard]] std::uint32_t answer_count() const noexcept { return answer_count_; }
 
  private:
-  std::vector<PixelCounts> answers_;  ///< ring
-  std::uint32_t next_ = 0;            ///< slot of the oldest answer once all are in use
+  struct HeldAnswer {
+    PixelCounts counts;
+    glm::dvec3 eye_m{0.0};
+  };
+
+  std::vector<HeldAnswer> answers_;  ///< ring
+  std::uint32_t next_ = 0;           ///< slot of the oldest answer once all are in use
   std::uint32_t answer_count_ = 0;
   PixelSums sums_;
 };

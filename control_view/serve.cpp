@@ -41,6 +41,8 @@ LinkOptions link_options(const DaemonOptions& options) {
 ServiceOptions service_options(const DaemonOptions& options, const EngineOptions& engine) {
   ServiceOptions service;
   service.pipeline = {options.size, options.filter, options.threshold, options.refine};
+  if (!options.open) service.pipeline.sample_px.reset();
+  service.pipeline.extents = options.extents;
   service.engine_name = engine.engine;
   service.counter_name = engine.counter;
   service.preset_name = options.preset;

@@ -23,15 +23,16 @@ constexpr double k_reading_a_step_s = 0.005;
 /// times the silence limit.
 constexpr double k_patience_in_a_flood = 10.0;
 
-/// Room for everything but a request's moves: above eight eyes and all texts.
+/// Room for everything but a request's lists of objects: above eight eyes and all texts.
 constexpr std::size_t k_frame_without_moves_bytes = 64u << 10;
-/// A move on the wire.
-constexpr std::size_t k_move_bytes = 104;
+/// What an object can take on the wire: a move, a box, and whether it is there.
+constexpr std::size_t k_object_bytes = 104 + 56 + 8;
 
 }  // namespace
 
 std::size_t largest_frame_of_a_client(std::uint32_t object_count) noexcept {
-  return std::min(k_frame_without_moves_bytes + k_move_bytes * object_count, DecodeLimits{}.max_frame_bytes);
+  return std::min(k_frame_without_moves_bytes + k_object_bytes * object_count,
+                  DecodeLimits{}.max_frame_bytes);
 }
 
 Service::Service(ServerLink& link, VisibilityEngine& engine, SceneIdentity scene, ServiceOptions options,
@@ -172,8 +173,11 @@ void Service::handle(const PeerId& peer, ViewRequest&& request) {
   if (session == nullptr || session->id() != request.session_id) {
     return refuse(peer, RefusalReason::no_session, "no such session of this peer: say Hello first");
   }
-  const auto in_scene = [&](const ObjectMove& move) { return index_of(move.id) < scene_.object_count; };
-  if (!std::all_of(request.moves.begin(), request.moves.end(), in_scene)) {
+  const auto all_in_scene = [&](const auto& list) {
+    return std::all_of(list.begin(), list.end(),
+                       [&](const auto& entry) { return index_of(entry.id) < scene_.object_count; });
+  };
+  if (!all_in_scene(request.moves) || !all_in_scene(request.boxed) || !all_in_scene(request.presence)) {
     return refuse_malformed(peer, "a moved object is not in the scene");
   }
   if (session->accept(std::move(request), clock_())) ++counters_.superseded;

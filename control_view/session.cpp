@@ -38,8 +38,11 @@ bool Session::silent(double before_s, double now_s, double grace_s) noexcept {
 bool Session::accept(ViewRequest request, double now_s) {
   if (request.request_seq < newest_request_seq_) return true;
   newest_request_seq_ = request.request_seq;
-  if (apply_moves(edits_, std::move(request.moves))) request.reset_filter = true;
+  const bool jumped = apply_moves(edits_, std::move(request.moves));
+  const bool changed = apply_presence(edits_, request.presence);
+  if ((jumped || changed) && pipeline_.remembers_absence()) request.reset_filter = true;
   request.moves.clear();
+  request.presence.clear();
 
   const bool supersedes = pending_.has_value();
   if (supersedes && pending_->request.reset_filter) request.reset_filter = true;
@@ -53,7 +56,10 @@ VisibleSetFrame Session::answer(VisibilityEngine& engine, const SceneDigest& dig
   Look look = pipeline_.look(request, edits_, engine);
 
   sent_.acknowledge(request.acked_set_seq);
-  EncodedSet encoded = encode_against(sent_.find(request.acked_set_seq), request.acked_set_seq, look.visible);
+  const VisibleSet* const held = sent_.find(request.acked_set_seq);
+  settle_extents(held, look.visible);
+  EncodedSet encoded = encode_against(held, request.acked_set_seq, look.visible);
+  EncodedExtents extents = encode_extents(encoded.base_seq == 0 ? nullptr : held, look.visible);
 
   VisibleSetFrame frame;
   frame.session_id = id();
@@ -63,6 +69,8 @@ VisibleSetFrame Session::answer(VisibilityEngine& engine, const SceneDigest& dig
   frame.base_seq = encoded.base_seq;
   frame.visible_count = static_cast<std::uint32_t>(look.visible.size());
   frame.bitmap = std::move(encoded.bitmap);
+  frame.extents_of = std::move(extents.ids);
+  frame.extents = std::move(extents.cells);
   frame.times = look.times;
   frame.times.queue_s = now_s - pending.received_s;
   frame.times.encode_s = last_encode_s_;

@@ -24,9 +24,10 @@ class Session {
   Session(std::uint64_t id, PeerId peer, std::string client_name, VisibilityPipeline pipeline, double now_s);
 
   /// Takes a request in: its moves are applied at once, and it replaces one that still waits. What must not
-  /// be lost with the one replaced (a reset of the filter) passes on. An object's jump resets the filter too.
-  /// One that is older than the newest heard of counts as superseded itself and changes nothing. Returns
-  /// whether a request was superseded.
+  /// be lost with the one replaced (a reset of the filter) passes on. An object that jumps, appears or
+  /// vanishes resets the filter too where that could keep out what now shows. One that is older than the
+  /// newest heard of counts as superseded itself and changes nothing. Returns whether a request was
+  /// superseded.
   bool accept(ViewRequest request, double now_s);
   [[nodiscard]] bool has_pending() const noexcept { return pending_.has_value(); }
 

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <utility>
+
+#include <glm/geometric.hpp>
 
 #include "control_view/threshold.hpp"
 
@@ -12,6 +15,48 @@ namespace sightline {
 double rotation_error_of(const ViewRequest& request) noexcept {
   const double error = request.rotation_error_rad;
   return std::isfinite(error) ? std::clamp(error, 0.0, std::numbers::pi) : std::numbers::pi;
+}
+
+namespace {
+
+/// Where the first eye is, world frame.
+glm::dvec3 eye_m_of(const ViewRequest& request) noexcept {
+  if (request.eyes.empty()) return {};
+  const glm::dmat4& m = request.eyes.front().camera_from_world;
+  return -(glm::transpose(glm::dmat3(m)) * glm::dvec3(m[3]));
+}
+
+// A longer way between two requests is a jump.
+constexpr double k_longest_step_m = 1.0;
+// A field twice as wide each way costs four times the pixels: beyond that they become larger instead.
+constexpr double k_widest = 2.0;
+// Steps in which an image grows, so that its size does not change with every request.
+constexpr double k_steps = 8.0;
+
+/// As many pixels a degree as an image of `size` has of the eyes' own fields, for the widened ones.
+ImageSize widened_size(ImageSize size, std::span<const Eye> eyes, std::span<const Eye> widened_eyes) {
+  double across = 1.0, up = 1.0;
+  for (std::size_t i = 0; i < eyes.size(); ++i) {
+    across = std::max(across, eyes[i].clip_from_camera[0][0] / widened_eyes[i].clip_from_camera[0][0]);
+    up = std::max(up, eyes[i].clip_from_camera[1][1] / widened_eyes[i].clip_from_camera[1][1]);
+  }
+  const auto grown = [](std::uint32_t side, double by) {
+    const double steps = std::ceil(k_steps * std::min(by, k_widest));
+    return std::min(k_max_image_side, static_cast<std::uint32_t>(std::ceil(side * steps / k_steps)));
+  };
+  return {grown(size.width, across), grown(size.height, up)};
+}
+
+}  // namespace
+
+double VisibilityPipeline::near_reach_of(const ViewRequest& request) {
+  double reach_m = 0.0;
+  for (const Eye& eye : request.eyes) reach_m = std::max(reach_m, near_reach_m(eye.clip_from_camera));
+  // The client is on its way between the eyes of two requests, or as far off as it says.
+  const glm::dvec3 eye_m = eye_m_of(request);
+  const double step_m = last_eye_m_ ? std::min(glm::length(eye_m - *last_eye_m_), k_longest_step_m) : 0.0;
+  last_eye_m_ = eye_m;
+  return reach_m + std::max(step_m, options_.region_share * request.position_error_m);
 }
 
 VisibilityPipeline::VisibilityPipeline(const PipelineOptions& options, Clock clock)
@@ -23,25 +68,38 @@ Look VisibilityPipeline::look(const ViewRequest& request, const SceneEdits& edit
     filter_.reset();
     refiner_.reset();
   }
+  if (begin_boxed(request) && remembers_absence()) filter_.reset();
   engine.apply(edits);
 
   // What the sweep of the last view found would pop away with the first coarse look at this one.
   refiner_.findings(counts_);
+  // What moves is looked at anew each time; a sweep would show it where it was.
+  if (!boxed_.empty()) refiner_.reset();
   const bool another_view = refiner_.begin(request, edits.version);
   if (another_view && !counts_.ids.empty()) filter_.add(counts_);
 
   const double error_rad = rotation_error_of(request);
-  const auto next = options_.refine ? refiner_.next_look(error_rad) : StillViewRefiner::Look::whole_view;
+  const auto next =
+      options_.refine && boxed_.empty() ? refiner_.next_look(error_rad) : StillViewRefiner::Look::whole_view;
   if (next == StillViewRefiner::Look::whole_view) count_whole_view(request, engine, look);
   if (next == StillViewRefiner::Look::tile) count_tile(request, engine, look);
 
   const double filter_began_s = clock_();
   if (next == StillViewRefiner::Look::whole_view) {
-    filter_.add(counts_);
+    filter_.add(counts_, eye_m_of(request));
     if (options_.refine) refiner_.add_whole_view(counts_, error_rad);
   }
   if (next == StillViewRefiner::Look::tile) refiner_.add_tile(counts_);
   look.visible = visible_now(error_rad > 0.0);
+  // A boxed object counts one pixel however large it is: no threshold is for it.
+  if (!boxed_.empty()) {
+    scratch_.clear();
+    std::set_intersection(counts_.ids.begin(), counts_.ids.end(), boxed_.begin(), boxed_.end(),
+                          std::back_inserter(scratch_));
+    look.visible.unite(VisibleSet(scratch_));
+  }
+  if (options_.extents) say_where(request, look.visible);
+  if (next == StillViewRefiner::Look::whole_view && !counts_.open.ids.empty()) add_open(look.visible);
   look.times.filter_s = clock_() - filter_began_s;
   return look;
 }
@@ -50,9 +108,32 @@ void VisibilityPipeline::count_whole_view(const ViewRequest& request, Visibility
   const double error_rad = rotation_error_of(request);
   widened_eyes_.assign(request.eyes.begin(), request.eyes.end());
   if (error_rad > 0.0) {
-    for (Eye& eye : widened_eyes_) eye.clip_from_camera = widened(eye.clip_from_camera, error_rad);
+    for (Eye& eye : widened_eyes_) {
+      const glm::dmat4 projection = eye.clip_from_camera;
+      eye.clip_from_camera = widened(projection, error_rad);
+      // What the client's near plane may cut away hides nothing. The client draws whatever comes that near.
+      if (options_.sample_px) move_near_plane(eye.clip_from_camera, nearest_kept_m(projection, error_rad));
+    }
   }
-  count({widened_eyes_, options_.size, {}}, engine, look);
+  ViewQuery query;
+  query.eyes = widened_eyes_;
+  query.size = options_.extents ? widened_size(options_.size, request.eyes, widened_eyes_) : options_.size;
+  query.boxed = request.boxed;
+  const bool is_the_main_image =
+      error_rad == 0.0 && request.position_error_m == 0.0 && query.size == request.main_size;
+  if (options_.sample_px && !is_the_main_image) {
+    query.doubt = {options_.region_share * request.position_error_m, *options_.sample_px,
+                   error_rad > 0.0 ? near_reach_of(request) : 0.0};
+  }
+  count(query, engine, look);
+}
+
+bool VisibilityPipeline::begin_boxed(const ViewRequest& request) {
+  scratch_.clear();
+  for (const BoxedObject& object : request.boxed) scratch_.push_back(object.id);
+  const bool more = !std::includes(boxed_.begin(), boxed_.end(), scratch_.begin(), scratch_.end());
+  boxed_.swap(scratch_);
+  return more;
 }
 
 void VisibilityPipeline::count_tile(const ViewRequest& request, VisibilityEngine& engine, Look& look) {
@@ -66,6 +147,42 @@ void VisibilityPipeline::count(const ViewQuery& query, VisibilityEngine& engine,
   look.times.draw_s = stats.draw_s;
   look.times.count_s = stats.count_s;
   look.drawn_objects = stats.drawn_objects;
+}
+
+void VisibilityPipeline::add_open(VisibleSet& visible) const {
+  const OpenObjects& open = counts_.open;
+  const std::vector<ObjectId> seen = visible.to_ids();
+  const std::span<const DirectionExtent> seen_extents = visible.extents();
+  std::vector<ObjectId> ids;
+  std::vector<DirectionExtent> extents;
+  std::size_t s = 0, o = 0;
+  while (s < seen.size() || o < open.ids.size()) {
+    const bool from_seen = o == open.ids.size() || (s < seen.size() && seen[s] <= open.ids[o]);
+    const bool from_open = s == seen.size() || (o < open.ids.size() && open.ids[o] <= seen[s]);
+    ids.push_back(from_seen ? seen[s] : open.ids[o]);
+    if (!seen_extents.empty() || seen.empty()) {
+      extents.push_back(from_seen && from_open ? united(seen_extents[s], open.extents[o])
+                        : from_seen            ? seen_extents[s]
+                                               : open.extents[o]);
+    }
+    if (from_seen) ++s;
+    if (from_open) ++o;
+  }
+  visible = VisibleSet(ids);
+  visible.set_extents(std::move(extents));
+}
+
+void VisibilityPipeline::say_where(const ViewRequest& request, VisibleSet& visible) const {
+  const std::vector<ObjectId> ids = visible.to_ids();
+  std::vector<DirectionExtent> extents;
+  filter_.extents_of(ids, eye_m_of(request), extents);
+  // What the closer looks saw was counted without saying where.
+  const auto tiles = refiner_.seen_in_tiles().ids;
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    const bool boxed = std::binary_search(boxed_.begin(), boxed_.end(), ids[i]);  // held anywhere in its box
+    if (boxed || std::binary_search(tiles.begin(), tiles.end(), ids[i])) extents[i] = k_seen_anywhere;
+  }
+  visible.set_extents(std::move(extents));
 }
 
 VisibleSet VisibilityPipeline::visible_now(bool guard_band) {

@@ -16,7 +16,12 @@ struct PipelineOptions {
   ImageSize size{512, 384};         ///< of the control image, pixels per eye
   std::uint32_t filter_length = 8;  ///< answers, 1 is none
   double threshold_pixels = 0.0;
-  bool refine = true;  ///< look closer while the camera stands still
+  bool refine = true;                     ///< look closer while the camera stands still
+  std::optional<double> sample_px = 1.0;  ///< look for open objects too, see ViewDoubt
+  /// Of the position error that a request states, how much its answer is to hold for: announced errors are
+  /// far above the usual ones, and every pixel of parallax leaves more objects open.
+  double region_share = 0.1;
+  bool extents = true;  ///< say in which directions each object was seen
 };
 
 /// What one session's request is answered with.
@@ -38,6 +43,11 @@ class VisibilityPipeline {
  public:
   VisibilityPipeline(const PipelineOptions& options, Clock clock);
 
+  /// Whether answers from before an object went away can keep out of the set what it hid: a mean above a
+  /// threshold takes some answers to rise. Without a threshold one look is enough, and forgetting the others
+  /// would only lose what they saw.
+  [[nodiscard]] bool remembers_absence() const noexcept { return options_.threshold_pixels > 0.0; }
+
   /// Throws what the engine throws.
   [[nodiscard]] Look look(const ViewRequest& request, const SceneEdits& edits, VisibilityEngine& engine);
 
@@ -46,13 +56,20 @@ class VisibilityPipeline {
   void count_tile(const ViewRequest& request, VisibilityEngine& engine, Look& look);
   void count(const ViewQuery& query, VisibilityEngine& engine, Look& look);
   [[nodiscard]] VisibleSet visible_now(bool guard_band);
+  /// Takes note of the objects on the move; whether some are that were at rest before.
+  bool begin_boxed(const ViewRequest& request);
+  [[nodiscard]] double near_reach_of(const ViewRequest& request);
+  void add_open(VisibleSet& visible) const;
+  void say_where(const ViewRequest& request, VisibleSet& visible) const;
 
   PipelineOptions options_;
   Clock clock_;
   LowPassFilter filter_;
   StillViewRefiner refiner_;
   std::vector<Eye> widened_eyes_;
+  std::vector<ObjectId> boxed_;  ///< of the last request
   PixelCounts counts_;
+  std::optional<glm::dvec3> last_eye_m_;  ///< of the last request
   std::vector<ObjectId> scratch_;
 };
 

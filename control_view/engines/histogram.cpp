@@ -15,7 +15,9 @@ void CountAccumulator::take(PixelCounts& counts) {
   for (const ObjectId id : touched_) {
     counts.ids.push_back(id);
     counts.pixels.push_back(std::exchange(pixels_[index_of(id)], 0));
+    if (says_where_) counts.extents.push_back(extents_[index_of(id)]);
   }
+  says_where_ = false;
   touched_.clear();
 }
 

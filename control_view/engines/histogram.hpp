@@ -21,11 +21,22 @@ class CountAccumulator {
     if (sum == 0 && pixels != 0) touched_.push_back(id);
     sum += pixels;
   }
+  /// The same, and where. Of the calls between two take() either all say where or none does.
+  void add(ObjectId id, std::uint32_t pixels, const DirectionExtent& extent) {
+    if (pixels == 0) return;
+    if (extents_.empty()) extents_.resize(pixels_.size());
+    DirectionExtent& held = extents_[index_of(id)];
+    held = pixels_[index_of(id)] == 0 ? extent : united(held, extent);
+    says_where_ = true;
+    add(id, pixels);
+  }
   /// Moves what was added into `counts`, ascending, and starts over.
   void take(PixelCounts& counts);
 
  private:
   std::vector<std::uint32_t> pixels_;
+  std::vector<DirectionExtent> extents_;  ///< as long, once anyone says where
+  bool says_where_ = false;
   std::vector<ObjectId> touched_;
 };
 

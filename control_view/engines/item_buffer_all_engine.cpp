@@ -7,6 +7,8 @@
 #include "common/gl/context.hpp"
 #include "common/gl/gpu_scene.hpp"
 #include "common/object_hierarchy.hpp"
+#include "control_view/engines/boxed_objects.hpp"
+#include "control_view/engines/depth_hierarchy.hpp"
 #include "control_view/engines/item_buffer_engine.hpp"
 #include "control_view/engines/item_buffer_pair.hpp"
 #include "control_view/engines/moved_objects.hpp"
@@ -42,7 +44,7 @@ class ItemBufferAllEngine final : public VisibilityEngine {
     EngineStats stats;
     const std::optional<gl::PixelRect> rect = window_rect(query);
     gl::ItemBuffer& buffer = buffers_.of(query);
-    for (const Eye& eye : query.eyes) count_eye(eye, buffer, rect, stats);
+    for (const Eye& eye : query.eyes) count_eye(query, eye, buffer, rect, stats);
     Stopwatch watch;
     sum_.take(counts);
     stats.count_s += watch.lap_s();
@@ -50,10 +52,10 @@ class ItemBufferAllEngine final : public VisibilityEngine {
   }
 
  private:
-  void count_eye(const Eye& eye, gl::ItemBuffer& buffer, const std::optional<gl::PixelRect>& rect,
-                 EngineStats& stats) {
+  void count_eye(const ViewQuery& query, const Eye& eye, gl::ItemBuffer& buffer,
+                 const std::optional<gl::PixelRect>& rect, EngineStats& stats) {
     Stopwatch watch;
-    cull(eye);
+    cull(eye, query.boxed);
     stats.cull_s += watch.lap_s();
 
     const gl::DrawStats drawn = buffer.draw(gpu_scene_, eye, in_frustum_, rect);
@@ -63,14 +65,31 @@ class ItemBufferAllEngine final : public VisibilityEngine {
     const PixelCounter::View view{gpu_scene_, buffer, eye, rect};
     counter_->add_opaque(view, in_frustum_, sum_);
     const gl::DrawStats blended = counter_->add_blended(view, blended_in_frustum_, sum_);
+    if (!query.boxed.empty()) count_boxed(query, eye, buffer, rect);
     stats.count_s += watch.lap_s();
     stats.drawn_objects += drawn.objects + blended.objects;
     stats.drawn_triangles += drawn.triangles + blended.triangles;
   }
 
-  void cull(const Eye& eye) {
+  void count_boxed(const ViewQuery& query, const Eye& eye, gl::ItemBuffer& buffer,
+                   const std::optional<gl::PixelRect>& rect) {
+    const gl::PixelRect area = rect.value_or(gl::PixelRect{0, 0, query.size});
+    buffer.read_depth(depth_, rect);
+    depth_hierarchy_.build(depth_, area.size);
+    const BoxProjector projector(gl::depth_clip_from_scene(eye, gpu_scene_.world_origin_m()), buffer.size(),
+                                 area);
+    report_boxed(query.boxed, {eye, gpu_scene_.world_origin_m(), buffer.size(), projector, depth_hierarchy_},
+                 sum_);
+  }
+
+  void cull(const Eye& eye, std::span<const BoxedObject> boxed) {
     const glm::dmat4 world_from_scene = glm::translate(glm::dmat4(1.0), gpu_scene_.world_origin_m());
     hierarchy_.collect_in_frustum(frustum_of(eye.clip_from_world() * world_from_scene), in_frustum_);
+    auto next = boxed.begin();  // both ascend
+    std::erase_if(in_frustum_, [&](ObjectId id) {
+      while (next != boxed.end() && next->id < id) ++next;
+      return next != boxed.end() && next->id == id;
+    });
     blended_in_frustum_.clear();
     std::copy_if(in_frustum_.begin(), in_frustum_.end(), std::back_inserter(blended_in_frustum_),
                  [this](ObjectId id) { return blended_[index_of(id)]; });
@@ -85,6 +104,8 @@ class ItemBufferAllEngine final : public VisibilityEngine {
   std::vector<bool> blended_;
   ItemBufferPair buffers_{gl::Stencil::with};
   std::vector<ObjectId> in_frustum_, blended_in_frustum_;
+  std::vector<float> depth_;
+  DepthHierarchy depth_hierarchy_;
 };
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "common/gl/context.hpp"
 #include "common/gl/gpu_scene.hpp"
 #include "common/object_hierarchy.hpp"
+#include "control_view/engines/boxed_objects.hpp"
 #include "control_view/engines/depth_hierarchy.hpp"
 #include "control_view/engines/detail_test.hpp"
 #include "control_view/engines/item_buffer_pair.hpp"
@@ -38,7 +39,8 @@ class ItemBufferEngine final : public VisibilityEngine {
         counts_in_memory_(options.counter == "histogram"),
         sum_(scene.object_count()),
         eye_sum_(scene.object_count()),
-        drawn_in_(scene.object_count(), 0) {
+        drawn_in_(scene.object_count(), 0),
+        boxed_in_(scene.object_count(), 0) {
     bool any_blended = false;
     for (std::uint32_t i = 0; i < scene.object_count(); ++i) {
       has_opaque_.push_back(gpu_scene_.has_layer(gl::Layer::opaque, ObjectId{i}) ? 1 : 0);
@@ -63,9 +65,12 @@ class ItemBufferEngine final : public VisibilityEngine {
     const std::optional<gl::PixelRect> window = window_rect(query);
     const gl::PixelRect area = window.value_or(gl::PixelRect{0, 0, query.size});
     gl::ItemBuffer& buffer = buffers_.of(query);
+    ++query_stamp_;
+    for (const BoxedObject& object : query.boxed) boxed_in_[index_of(object.id)] = query_stamp_;
     for (std::size_t i = 0; i < query.eyes.size(); ++i) {
       const glm::mat4 clip_from_scene = gl::depth_clip_from_scene(query.eyes[i], gpu_scene_.world_origin_m());
-      count_eye({buffer, query.eyes[i], i, window, area, BoxProjector(clip_from_scene, buffer.size(), area)},
+      count_eye({buffer, query.eyes[i], i, window, area, BoxProjector(clip_from_scene, buffer.size(), area),
+                 query.boxed},
                 stats);
     }
     Stopwatch watch;
@@ -83,6 +88,7 @@ class ItemBufferEngine final : public VisibilityEngine {
     std::optional<gl::PixelRect> window;
     gl::PixelRect area;  ///< the window, or the whole image
     BoxProjector projector;
+    std::span<const BoxedObject> boxed;
   };
   struct Candidate {
     ObjectId id;
@@ -120,8 +126,17 @@ class ItemBufferEngine final : public VisibilityEngine {
     if (!read && counts_in_memory_) frame.buffer.read(codes_, frame.window);
     if (!settled && !counts_in_memory_) frame.buffer.write(codes_, frame.area);
     add_counts(frame, stats);
+    if (!frame.boxed.empty()) {
+      depth_hierarchy_.build(depth_, frame.area.size);
+      report_boxed(
+          frame.boxed,
+          {frame.eye, gpu_scene_.world_origin_m(), frame.buffer.size(), frame.projector, depth_hierarchy_},
+          sum_);
+    }
     stats.count_s += watch.lap_s();
   }
+
+  [[nodiscard]] bool is_boxed(ObjectId id) const { return boxed_in_[index_of(id)] == query_stamp_; }
 
   /// What the eye saw last and still may, or what is nearest where it saw nothing. Ascending.
   void choose_first(const Frame& frame) {
@@ -129,15 +144,16 @@ class ItemBufferEngine final : public VisibilityEngine {
     // A second eye that is new starts from the first's.
     if (seen->empty() && frame.eye_index > 0) seen = &visible_last_.of(owner_, frame.eye_index - 1);
     drawn_.clear();
-    std::copy_if(seen->begin(), seen->end(), std::back_inserter(drawn_),
-                 [&](ObjectId id) { return frame.projector.project(hierarchy_.bounds_of(id)).has_value(); });
+    std::copy_if(seen->begin(), seen->end(), std::back_inserter(drawn_), [&](ObjectId id) {
+      return !is_boxed(id) && frame.projector.project(hierarchy_.bounds_of(id)).has_value();
+    });
     if (drawn_.empty()) choose_nearest(frame);
     for (const ObjectId id : drawn_) drawn_in_[index_of(id)] = frame_stamp_;
   }
 
   void choose_nearest(const Frame& frame) {
     walk_nearest_first(hierarchy_, frame.projector, heap_, [this](ObjectId id) {
-      if (has_opaque_[index_of(id)] != 0) drawn_.push_back(id);
+      if (has_opaque_[index_of(id)] != 0 && !is_boxed(id)) drawn_.push_back(id);
       return drawn_.size() < k_first_batch;
     });
     std::sort(drawn_.begin(), drawn_.end());
@@ -163,7 +179,7 @@ class ItemBufferEngine final : public VisibilityEngine {
     const auto drawn = [this](ObjectId id) { return drawn_in_[index_of(id)] == frame_stamp_; };
     walk_what_may_show(
         hierarchy_, frame.projector, depth_hierarchy_,
-        [&](ObjectId id) { return drawn(id) && has_blended_[index_of(id)] == 0; },
+        [&](ObjectId id) { return is_boxed(id) || (drawn(id) && has_blended_[index_of(id)] == 0); },
         [&](ObjectId id, const ScreenBox& box) {
           if (has_blended_[index_of(id)] != 0) blended_.push_back(id);
           if (has_opaque_[index_of(id)] != 0 && !drawn(id)) candidates_.push_back({id, box});
@@ -268,6 +284,8 @@ class ItemBufferEngine final : public VisibilityEngine {
   std::vector<std::uint8_t> has_opaque_, has_blended_;
   std::vector<std::uint64_t> drawn_in_;  ///< per object: the stamp of the frame that drew it last
   std::uint64_t frame_stamp_ = 0;
+  std::vector<std::uint64_t> boxed_in_;  ///< per object: the stamp of the query that boxed it last
+  std::uint64_t query_stamp_ = 0;
   std::vector<NearestFirstEntry> heap_;
   std::vector<ObjectId> drawn_, pass_, blended_;  ///< drawn_ and blended_ ascend
   std::vector<Candidate> candidates_;

@@ -20,7 +20,7 @@ class MovedObjects {
   struct Change {
     std::vector<ObjectId> ids;  ///< ascending
     std::vector<glm::dmat4> scene_from_object;
-    std::vector<Aabb> bounds;  ///< scene frame, conservative
+    std::vector<Aabb> bounds;  ///< scene frame, conservative; empty for one that is hidden now
   };
 
   /// The objects to move so that exactly `edits` holds; empty when it already does. Valid until the next
@@ -29,6 +29,7 @@ class MovedObjects {
 
  private:
   void append(ObjectId id, const glm::dmat4& scene_from_object);
+  void append_hidden(ObjectId id);
 
   glm::dvec3 world_origin_m_;
   std::vector<glm::mat4> file_placements_;  ///< as the GPU has them
@@ -36,7 +37,7 @@ class MovedObjects {
   std::vector<std::uint32_t> mesh_of_object_;
   std::uint64_t owner_ = 0;
   std::uint64_t version_ = 0;
-  std::vector<ObjectId> moved_;  ///< away from the file's placement, ascending
+  std::vector<ObjectId> edited_;  ///< away from the file's placement or hidden, ascending
   Change change_;
 };
 

@@ -19,6 +19,8 @@ namespace {
 
 constexpr std::uint32_t k_packet_columns = 4;
 constexpr std::uint32_t k_packet_rows = 2;
+/// Owner of edits that no session has sent: sessions are numbered otherwise.
+constexpr std::uint64_t k_no_session = 0;
 /// Rows a worker takes at a time.
 constexpr std::uint32_t k_strip_rows = 8;
 
@@ -61,10 +63,8 @@ class RaycastEngine final : public VisibilityEngine {
   }
 
   void apply(const SceneEdits& edits) override {
-    const MovedObjects::Change& change = moved_.turn_to(edits);
-    if (change.ids.empty()) return;
-    opaque_.place(change.ids, change.scene_from_object);
-    blended_.place(change.ids, change.scene_from_object);
+    if (edits.owner != edits_.owner || edits.version != edits_.version) edits_ = edits;
+    place(edits);
   }
 
   EngineStats count(const ViewQuery& query, PixelCounts& counts) override {
@@ -72,6 +72,7 @@ class RaycastEngine final : public VisibilityEngine {
     Picture picture{query.size, query.size};
     if (query.window) picture = {query.window->image, query.size, query.window->x, query.window->y};
     Stopwatch watch;
+    leave_out(query.boxed);
     for (const Eye& eye : query.eyes) trace_eye(EyeRays(eye, world_origin_m_, picture.image), picture);
     stats.draw_s = watch.lap_s();
     for (Tally& tally : tallies_) {
@@ -80,12 +81,33 @@ class RaycastEngine final : public VisibilityEngine {
         sum_.add(tally.counts.ids[i], tally.counts.pixels[i]);
       }
     }
+    // There is no depth to hold a box against: each is reported.
+    for (const BoxedObject& object : query.boxed) sum_.add(object.id, 1);
     sum_.take(counts);
     stats.count_s = watch.lap_s();
     return stats;
   }
 
  private:
+  void place(const SceneEdits& edits) {
+    const MovedObjects::Change& change = moved_.turn_to(edits);
+    if (change.ids.empty()) return;
+    opaque_.place(change.ids, change.scene_from_object);
+    blended_.place(change.ids, change.scene_from_object);
+  }
+
+  /// Boxed objects are hidden as those are that are not there, until the next apply.
+  void leave_out(std::span<const BoxedObject> boxed) {
+    if (boxed.empty()) return;
+    SceneEdits left_out = edits_;
+    left_out.owner = k_no_session;
+    left_out.version = ++boxed_version_;
+    for (const BoxedObject& object : boxed) left_out.hidden.push_back(object.id);
+    std::sort(left_out.hidden.begin(), left_out.hidden.end());
+    left_out.hidden.erase(std::unique(left_out.hidden.begin(), left_out.hidden.end()), left_out.hidden.end());
+    place(left_out);
+  }
+
   /// One worker's own: no worker touches another's.
   struct Tally {
     explicit Tally(std::uint32_t object_count) : sum(object_count) {}
@@ -155,6 +177,8 @@ class RaycastEngine final : public VisibilityEngine {
   EmbreeDevice device_;
   RaycastLayer opaque_, blended_;
   MovedObjects moved_;
+  SceneEdits edits_;
+  std::uint64_t boxed_version_ = 0;
   std::vector<Tally> tallies_;
   CountAccumulator sum_;
 };

@@ -128,7 +128,15 @@ TEST(CommandLine, WinsOverTheConfigFileAndThatOverThePreset) {
   EXPECT_EQ(options.threshold, 3.0);
   EXPECT_TRUE(options.refine);
   EXPECT_EQ(options.max_sessions, 5u);
-  EXPECT_FALSE(serve_options({"serve", "--preset", "avango"}).refine);
+}
+
+TEST(CommandLine, SwitchesOffForThePaperWhatIsOurs) {
+  const DaemonOptions paper = serve_options({"serve", "--preset", "avango"});
+  EXPECT_EQ(paper.filter, 8u);
+  EXPECT_EQ(paper.threshold, 0.0);
+  EXPECT_FALSE(paper.refine);
+  EXPECT_FALSE(paper.open);
+  EXPECT_FALSE(paper.extents);
 }
 
 TEST(CommandLine, HasThePapersDefaults) {

@@ -38,7 +38,7 @@ inline std::uint64_t seed_of(double place, const std::optional<ImageWindow>& win
   return window ? seed * 1000003 + window->x * 65537 + window->y + 1 : seed;
 }
 
-/// Sees ids_of the eyes' places, and every object that was moved.
+/// Sees ids_of the eyes' places, and every object that was moved or is boxed.
 class FakeEngine final : public VisibilityEngine {
  public:
   void apply(const SceneEdits& edits) override {
@@ -51,6 +51,7 @@ class FakeEngine final : public VisibilityEngine {
     windows.push_back(query.window);
     sizes.push_back(query.size);
     last_eyes.assign(query.eyes.begin(), query.eyes.end());
+    last_boxed.assign(query.boxed.begin(), query.boxed.end());
     if (lose_context) throw MachineError("the context is lost");
     if (throw_once) {
       throw_once = false;
@@ -62,6 +63,7 @@ class FakeEngine final : public VisibilityEngine {
       seen.insert(seen.end(), ids.begin(), ids.end());
     }
     for (const ObjectMove& move : edits_.moves) seen.push_back(move.id);
+    for (const BoxedObject& object : query.boxed) seen.push_back(object.id);
     std::sort(seen.begin(), seen.end());
     seen.erase(std::unique(seen.begin(), seen.end()), seen.end());
     counts.clear();
@@ -81,6 +83,7 @@ class FakeEngine final : public VisibilityEngine {
   std::vector<std::optional<ImageWindow>> windows;
   std::vector<ImageSize> sizes;
   std::vector<Eye> last_eyes;
+  std::vector<BoxedObject> last_boxed;
 
  private:
   SceneEdits edits_;

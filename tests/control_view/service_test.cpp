@@ -226,9 +226,10 @@ TEST(Service, ResetsTheFilterWhenAsked) {
   EXPECT_EQ(client.ask(jump), seen_from(3.0));
 }
 
-TEST(Service, ResetsTheFilterWhenAnObjectJumpsAndNotWhenItMoves) {
+TEST(Service, ResetsAFilterWithAThresholdWhenAnObjectJumpsAndNotWhenItMoves) {
   ServiceOptions options = Daemon::default_options();
   options.pipeline.filter_length = 8;
+  options.pipeline.threshold_pixels = 0.05;
   Daemon daemon(options);
   Client client(daemon);
   client.open();
@@ -249,6 +250,40 @@ TEST(Service, ResetsTheFilterWhenAnObjectJumpsAndNotWhenItMoves) {
   ViewRequest leap = client.request(4, 4.0);
   leap.moves = {move_of(4321, 9.0)};
   EXPECT_EQ(client.ask(leap), with_moved(seen_from(4.0)));
+  ViewRequest without = client.request(5, 5.0);
+  without.presence = {{ObjectId{17}, false}};
+  EXPECT_EQ(client.ask(without), with_moved(seen_from(5.0)));
+}
+
+TEST(Service, KeepsAFilterWithoutThresholdWhenAnObjectJumps) {
+  ServiceOptions options = Daemon::default_options();
+  options.pipeline.filter_length = 8;
+  Daemon daemon(options);
+  Client client(daemon);
+  client.open();
+  const ObjectId moved{4321};
+  (void)client.ask(client.request(1, 1.0));
+  ViewRequest jump = client.request(2, 2.0);
+  jump.moves = {move_of(4321, 5.0)};
+  VisibleSet both = seen_from(1.0);
+  both.unite(seen_from(2.0));
+  both.unite(VisibleSet({&moved, 1}));
+  EXPECT_EQ(client.ask(jump), both) << "one look shows what the object hid: no need to forget the others";
+}
+
+TEST(Service, PutsABoxedObjectIntoTheSetWhateverTheThreshold) {
+  ServiceOptions options = Daemon::default_options();
+  options.pipeline.filter_length = 8;
+  options.pipeline.threshold_pixels = 100.0;  // nothing else is seen
+  Daemon daemon(options);
+  Client client(daemon);
+  client.open();
+  const ObjectId boxed{static_cast<std::uint32_t>(4321)};
+  ViewRequest request = client.request(1, 1.0);
+  request.boxed = {{boxed, {glm::dvec3(0.0), glm::dvec3(1.0)}}};
+  EXPECT_EQ(client.ask(request), VisibleSet({&boxed, 1}));
+  EXPECT_EQ(daemon.engine.last_boxed, request.boxed);
+  EXPECT_EQ(client.ask(client.request(2, 1.0)), VisibleSet());
 }
 
 TEST(Service, HoldsTheAnswerRate) {
@@ -457,7 +492,11 @@ TEST(ServiceUnderAttack, TakesNoMoreMovesThanThereAreObjects) {
   Client client(daemon);
   client.open();
   ViewRequest request = client.request(1, 1.0);
-  for (std::uint32_t id = 0; id < k_object_count; ++id) request.moves.push_back(move_of(id, 1.0));
+  for (std::uint32_t id = 0; id < k_object_count; ++id) {
+    request.moves.push_back(move_of(id, 1.0));
+    request.boxed.push_back({ObjectId{id}, {}});
+    request.presence.push_back({ObjectId{id}, true});
+  }
   EXPECT_LE(encode(request).size(), largest_frame_of_a_client(k_object_count));
   EXPECT_EQ(client.ask(request).size(), k_object_count);
   request.request_seq = 2;
@@ -511,10 +550,16 @@ TEST(ServiceUnderAttack, RefusesMovesOfObjectsThatAreNotThere) {
   Daemon daemon;
   Client client(daemon);
   client.open();
-  ViewRequest request = client.request(1, 1.0);
-  request.moves = {move_of(k_object_count, 0.0)};
-  client.send(request);
-  EXPECT_EQ(client.next_as<Refusal>().reason, RefusalReason::malformed);
+  const ObjectId absent{k_object_count};
+  ViewRequest moves = client.request(1, 1.0), boxed = moves, presence = moves;
+  moves.moves = {move_of(k_object_count, 0.0)};
+  boxed.boxed = {{ObjectId{1}, {}}, {absent, {}}};
+  presence.presence = {{absent, false}};
+  for (const ViewRequest& request : {moves, boxed, presence}) {
+    daemon.now_s += 2.0;  // one such refusal a second
+    client.send(request);
+    EXPECT_EQ(client.next_as<Refusal>().reason, RefusalReason::malformed);
+  }
   EXPECT_EQ(client.ask(client.request(2, 2.0)), seen_from(2.0));
 }
 

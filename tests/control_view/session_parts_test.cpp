@@ -1,5 +1,6 @@
 #include <map>
 #include <random>
+#include <set>
 
 #include <gtest/gtest.h>
 
@@ -50,6 +51,27 @@ TEST(MovedObjects, KeepTheirVersionWhenAMoveIsRepeated) {
   EXPECT_EQ(edits.version, 1u);
   apply_moves(edits, {move_of(3, 1.0)});
   EXPECT_EQ(edits.version, 1u);
+}
+
+TEST(AbsentObjects, AreWhatASetOfTheLastChangesHolds) {
+  std::mt19937 random(8);
+  SceneEdits edits;
+  std::set<ObjectId> expected;
+  for (int request = 0; request < 300; ++request) {
+    std::map<ObjectId, bool> changes;
+    for (std::uint32_t i = random() % 8; i-- > 0;) changes[ObjectId{random() % 40}] = random() % 2 == 0;
+    std::vector<ObjectPresence> presence;
+    const auto before = expected;
+    for (const auto& [id, present] : changes) {
+      presence.push_back({id, present});
+      if (present) expected.erase(id);
+      if (!present) expected.insert(id);
+    }
+    const std::uint64_t version = edits.version;
+    ASSERT_EQ(apply_presence(edits, presence), expected != before);
+    ASSERT_EQ(edits.version != version, expected != before);
+    ASSERT_EQ(edits.hidden, std::vector<ObjectId>(expected.begin(), expected.end()));
+  }
 }
 
 TEST(SentSets, FindWhatWasAddedLatelyAndNothingElse) {

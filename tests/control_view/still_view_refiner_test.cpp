@@ -184,8 +184,15 @@ TEST(VisibilityPipeline, WidensWholeViewsAndNeverTiles) {
   ViewRequest request = request_from(3.0);
   request.rotation_error_rad = 0.1;
   (void)pipeline.look(request, {}, engine);
-  EXPECT_EQ(engine.last_eyes.at(0).clip_from_camera, widened(request.eyes[0].clip_from_camera, 0.1));
-  EXPECT_EQ(engine.sizes.back(), k_control);
+  // As wide as the error asks for, with as many pixels a degree, and nothing as near as the client's own near
+  // plane may cut away.
+  glm::dmat4 wide = widened(request.eyes[0].clip_from_camera, 0.1);
+  move_near_plane(wide, near_reach_m(request.eyes[0].clip_from_camera));
+  EXPECT_EQ(engine.last_eyes.at(0).clip_from_camera, wide);
+  EXPECT_GT(engine.sizes.back().width, k_control.width);
+  EXPECT_GE(engine.sizes.back().width * wide[0][0], k_control.width * request.eyes[0].clip_from_camera[0][0]);
+  EXPECT_GE(engine.sizes.back().height * wide[1][1],
+            k_control.height * request.eyes[0].clip_from_camera[1][1]);
   (void)pipeline.look(request, {}, engine);
   EXPECT_TRUE(engine.windows.back().has_value());
   EXPECT_EQ(engine.last_eyes, request.eyes);
@@ -222,6 +229,24 @@ TEST(VisibilityPipeline, LooksAtTheWholeAgainWhenAnObjectMoves) {
   edits.moves = {{ObjectId{4999}, glm::dmat4x3(1.0)}};
   EXPECT_TRUE(pipeline.look(request, edits, engine).visible.contains(ObjectId{4999}));
   EXPECT_FALSE(engine.windows.back().has_value());
+}
+
+TEST(VisibilityPipeline, LooksAtTheWholeForAsLongAsAnObjectIsOnTheMove) {
+  FakeEngine engine;
+  VisibilityPipeline pipeline(options(), zero_clock);
+  const ViewRequest still = request_from(3.0);
+  for (int look = 0; look < 8; ++look) (void)pipeline.look(still, {}, engine);
+  ViewRequest moving = still;
+  moving.boxed = {{ObjectId{4999}, {glm::dvec3(0.0), glm::dvec3(1.0)}}};
+  for (int look = 0; look < 8; ++look) {
+    moving.boxed[0].world_bounds.max.x += 1.0;
+    EXPECT_TRUE(pipeline.look(moving, {}, engine).visible.contains(ObjectId{4999}));
+    EXPECT_FALSE(engine.windows.back().has_value());
+    EXPECT_EQ(engine.last_boxed, moving.boxed);
+  }
+  VisibleSet last;
+  for (int look = 0; look < 8; ++look) last = pipeline.look(still, {}, engine).visible;
+  EXPECT_EQ(last, all_tiles(3.0, still.main_size)) << "at rest it sweeps again";
 }
 
 TEST(VisibilityPipeline, ForgetsEverythingOnAReset) {

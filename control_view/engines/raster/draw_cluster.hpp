@@ -110,6 +110,16 @@ class ItemDrawer {
   }
   [[nodiscard]] std::uint32_t blended_pixels() const { return blended_pixels_; }
 
+  /// Instead of drawing, the clusters that follow are looked at: does any of their triangles, as large as the
+  /// pixels it touches, lie in front of the image? Alpha is not asked.
+  /// In which blocks is added to `in_front`; beyond `enough` of them no more are looked for.
+  void begin_probe(const Item& item, bool both_sides, BlockRectangle& in_front, int enough) {
+    begin(item, false, 0);
+    both_sides_ = both_sides;
+    in_front_ = &in_front;
+    enough_ = enough;
+  }
+
   void draw(const Cluster& cluster, std::int32_t rank, bool may_clip) {
     rank_ = rank;
     const unsigned cut = transform(scene_, cluster, *placement_, view_, may_clip, vertices_);
@@ -210,6 +220,13 @@ class ItemDrawer {
 
   void flush() {
     const bool mirrored = placement_->mirrored;
+    if (in_front_ != nullptr) {
+      set_up<true>(target_, batch_, item_->double_sided || both_sides_, mirrored,
+                   [&](const FillTriangle& triangle, int, bool) {
+                     if (in_front_->area() <= enough_) find_in_front(target_, triangle, lanes_, *in_front_);
+                   });
+      return;
+    }
     set_up(target_, batch_, item_->double_sided, mirrored,
            [&](const FillTriangle& triangle, int lane, bool counter_clockwise) {
              if (may_be_cut_ && !item_->double_sided && !winding_survives_clipping(batch_, lane, mirrored) &&
@@ -263,6 +280,9 @@ class ItemDrawer {
   std::int32_t rank_ = 0;
   std::int32_t mark_ = 0;
   std::uint32_t blended_pixels_ = 0;
+  BlockRectangle* in_front_ = nullptr;  ///< of a probe
+  bool both_sides_ = false;
+  int enough_ = 0;
   ClusterVertices vertices_;
   Batch batch_;
 };

@@ -2,33 +2,25 @@
 #pragma once
 
 #include "control_view/engines/raster/draw_cluster.hpp"
+#include "control_view/engines/raster/region_walk.hpp"
 
 namespace sightline::raster::SIGHTLINE_LANES {
 
 /// One walk over the scene for one region of a view.
-class RegionDrawer {
+class RegionDrawer : RegionWalk {
  public:
   RegionDrawer(const RegionJob& job, RegionMemory& memory)
-      : job_(job),
-        scene_(*job.scene),
+      : RegionWalk(*job.scene, *job.view, job.region, memory),
+        job_(job),
         memory_(memory),
-        target_(job.region, memory),
-        drawer_(*job.scene, *job.view, target_, memory) {
-    for (int column = 0; column < 4; ++column) {
-      for (int row = 0; row < 4; ++row) {
-        view_.clip_from_box[column][row] = job.view->clip_from_scene[column][row];
-        view_.magnitude[column][row] = __builtin_fabsf(job.view->clip_from_scene[column][row]);
-      }
-    }
-    view_.half_width = 0.5f * static_cast<float>(job.view->image_width);
-    view_.half_height = 0.5f * static_cast<float>(job.view->image_height);
-  }
+        drawer_(*job.scene, *job.view, target_, memory) {}
 
   RegionResult draw() {
     draw_first(job_.first, job_.first_count);
-    draw_rest();
+    walk([this](const ScreenBox& box, std::uint32_t object) { draw_object(box, object); });
     count_blended();
     count_opaque();
+    count_boxes();
     return take_result();
   }
 
@@ -42,31 +34,6 @@ class RegionDrawer {
       enter(owner.object);
       drawer_.begin(item, true, 0);
       draw_rank(item, static_cast<std::int32_t>(ranks[i]));
-    }
-  }
-
-  /// Everything else that may show, front to back.
-  void draw_rest() {
-    if (scene_.nodes == nullptr) return;
-    Candidate stack[ObjectHierarchy::k_max_depth + 2];
-    int depth = 0;
-    push_if_visible(0, stack, depth);
-    while (depth > 0) {
-      const Candidate next = stack[--depth];
-      if (hidden(next.box)) continue;
-      const ObjectHierarchy::Node& node = scene_.nodes[next.index];
-      if (node.right == 0) {
-        draw_leaf(node);
-        continue;
-      }
-      const int before = depth;
-      push_if_visible(next.index + 1, stack, depth);
-      push_if_visible(node.right, stack, depth);
-      if (depth == before + 2 && stack[depth - 1].box.nearest < stack[depth - 2].box.nearest) {
-        const Candidate farther = stack[depth - 1];
-        stack[depth - 1] = stack[depth - 2];
-        stack[depth - 2] = farther;
-      }
     }
   }
 
@@ -84,62 +51,31 @@ class RegionDrawer {
         draw_item(scene_.items[item], box, mark);
         pixels += drawer_.blended_pixels();
       }
-      if (pixels > 0) add_count(object, pixels);
+      if (pixels > 0) add_count(object, pixels, shown_in(box));
     }
   }
 
   void count_opaque() {
     for (int block = 0; block < target_.blocks_x * target_.blocks_y; ++block) {
-      if (!target_.untouched(block)) count_block(target_.rank + block * k_block_pixels);
+      if (!target_.untouched(block)) count_block(block);
+    }
+  }
+
+  void count_boxes() {
+    for (std::uint32_t i = 0; i < job_.box_count; ++i) {
+      const ScreenBox box = screen_box(job_.boxes[i].box);
+      if (box.visible && !hidden(box)) add_count(job_.boxes[i].object, 1, shown_in(box));
     }
   }
 
   RegionResult take_result() {
     for (std::uint32_t i = 0; i < result_.seen_count; ++i) {
       std::uint32_t& pixels = memory_.pixels_of_rank[memory_.seen_ranks[i]];
-      add_count(scene_.owners[memory_.seen_ranks[i]].object, pixels);
+      add_count(scene_.owners[memory_.seen_ranks[i]].object, pixels,
+                memory_.shown_of_rank[memory_.seen_ranks[i]]);
       pixels = 0;
     }
     return result_;
-  }
-
-  /// A node or an object, by its index.
-  struct Candidate {
-    ScreenBox box;
-    std::uint32_t index = 0;
-  };
-
-  [[nodiscard]] ScreenBox screen_box(const Aabb& box) const {
-    // An empty box is an object that is not there.
-    return box.min.x > box.max.x ? ScreenBox{} : screen_box_of(box, view_, target_);
-  }
-  bool hidden(const ScreenBox& box) {
-    return target_.hides_rectangle(box.left, box.bottom, box.right, box.top, box.nearest);
-  }
-
-  void push_if_visible(std::uint32_t index, Candidate* stack, int& depth) {
-    const ScreenBox box = screen_box(scene_.nodes[index].box);
-    if (!box.visible || hidden(box)) return;
-    stack[depth++] = {box, index};
-  }
-
-  void draw_leaf(const ObjectHierarchy::Node& leaf) {
-    Candidate objects[k_most_at_once];
-    int count = 0;
-    const auto draw_all = [&] {
-      for (int i = 0; i < count; ++i) draw_object(objects[i].box, objects[i].index);
-      count = 0;
-    };
-    for (std::uint32_t slot = leaf.first_slot; slot < leaf.end_slot; ++slot) {
-      const auto object = static_cast<std::uint32_t>(scene_.slots[slot]);
-      const ScreenBox box = screen_box(scene_.bounds[object]);
-      if (!box.visible || hidden(box)) continue;
-      if (count == k_most_at_once) draw_all();
-      int at = count++;
-      for (; at > 0 && objects[at - 1].box.nearest < box.nearest; --at) objects[at] = objects[at - 1];
-      objects[at] = {box, object};
-    }
-    draw_all();
   }
 
   void draw_object(const ScreenBox& box, std::uint32_t object) {
@@ -200,41 +136,13 @@ class RegionDrawer {
     result_.drawn_triangles += scene_.clusters[cluster].triangle_count;
   }
 
-  [[nodiscard]] bool is_gone(std::uint32_t object) const {
-    return scene_.bounds[object].min.x > scene_.bounds[object].max.x;
+  void add_count(std::uint32_t object, std::uint32_t pixels, const ShownIn& shown) {
+    memory_.counts[result_.count_count++] = {object, pixels, shown};
   }
 
-  /// Makes object_view_ that of the object's mesh.
-  void enter(std::uint32_t object) {
-    if (object == object_of_view_) return;
-    object_of_view_ = object;
-    object_view_ = view_of(scene_.placements[object]);
-  }
-
-  /// For boxes in the frame of a mesh.
-  [[nodiscard]] BoxView view_of(const Placement& placement) const {
-    if (placement.identity) return view_;
-    BoxView view = view_;
-    for (int column = 0; column < 4; ++column) {
-      for (int row = 0; row < 4; ++row) {
-        float sum = column == 3 ? view_.clip_from_box[3][row] : 0.0f;
-        float magnitude = column == 3 ? view_.magnitude[3][row] : 0.0f;
-        for (int i = 0; i < 3; ++i) {
-          sum += view_.clip_from_box[i][row] * placement.columns[column][i];
-          magnitude += view_.magnitude[i][row] * __builtin_fabsf(placement.columns[column][i]);
-        }
-        view.clip_from_box[column][row] = sum;
-        view.magnitude[column][row] = magnitude;
-      }
-    }
-    return view;
-  }
-
-  void add_count(std::uint32_t object, std::uint32_t pixels) {
-    memory_.counts[result_.count_count++] = {object, pixels};
-  }
-
-  void count_block(const std::int32_t* ranks) {
+  void count_block(int block) {
+    const std::int32_t* const ranks = target_.rank + block * k_block_pixels;
+    const ShownIn here = shown_in_block(block);
     std::uint64_t ends = 0;  // bit i: pixel i + 1 has another rank than pixel i
     for (int i = 0; i < k_block_pixels; i += k_lanes) {
       ends |= std::uint64_t{bits(!(load(ranks + i) == load(ranks + i + 1))) & k_every_lane} << i;
@@ -243,30 +151,47 @@ class RegionDrawer {
     int start = 0;
     for (; ends != 0; ends &= ends - 1) {
       const int end = __builtin_ctzll(ends) + 1;
-      add_run(ranks[start], end - start);
+      add_run(ranks[start], end - start, here);
       start = end;
     }
-    add_run(ranks[start], k_block_pixels - start);
+    add_run(ranks[start], k_block_pixels - start, here);
   }
 
-  void add_run(std::int32_t rank, int pixels) {
+  [[nodiscard]] ShownIn shown_in_block(int block) const {
+    const float* const depth = target_.depth + block * k_block_pixels;
+    Floats negative_nearest = all(0.0f);
+    // Pixels outside the region are nearer than anything.
+    for (int i = 0; i < k_block_pixels; i += k_lanes) {
+      const Floats d = load(depth + i);
+      negative_nearest = min(negative_nearest, select(d > all(1.0f), all(0.0f), all(0.0f) - d));
+    }
+    const int left = target_.x0 + block % target_.blocks_x * k_block;
+    const int bottom = target_.y0 + block / target_.blocks_x * k_block;
+    return {left, bottom, left + k_block - 1, bottom + k_block - 1, -least(negative_nearest)};
+  }
+
+  void add_run(std::int32_t rank, int pixels, const ShownIn& here) {
     if (rank == 0) return;
     std::uint32_t& sum = memory_.pixels_of_rank[rank];
-    if (sum == 0) memory_.seen_ranks[result_.seen_count++] = static_cast<std::uint32_t>(rank);
+    ShownIn& shown = memory_.shown_of_rank[rank];
+    if (sum == 0) {
+      memory_.seen_ranks[result_.seen_count++] = static_cast<std::uint32_t>(rank);
+      shown = here;
+    } else {
+      // Blocks come row by row from the bottom.
+      if (here.left < shown.left) shown.left = here.left;
+      if (here.right > shown.right) shown.right = here.right;
+      if (here.top > shown.top) shown.top = here.top;
+      if (here.nearest > shown.nearest) shown.nearest = here.nearest;
+    }
     sum += static_cast<std::uint32_t>(pixels);
   }
 
-  static constexpr int k_most_at_once = 8;
   static constexpr unsigned k_every_lane = (1u << k_lanes) - 1u;
 
   const RegionJob& job_;
-  const KernelScene& scene_;
   RegionMemory& memory_;
-  Target target_;
   ItemDrawer drawer_;
-  BoxView view_;
-  BoxView object_view_;
-  std::uint32_t object_of_view_ = 0xffffffffu;
   std::uint32_t blended_count_ = 0;
   RegionResult result_{};
 };

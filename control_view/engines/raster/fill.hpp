@@ -13,8 +13,9 @@ struct FillTriangle {
   std::int32_t step_x[3];
   std::int32_t step_y[3];
   std::int64_t at_origin[3];
-  float depth_x, depth_y, depth_0;  ///< depth = min(1, fma(depth_y, py, fma(depth_x, px, depth_0)))
-  int left, bottom, right, top;     ///< pixels, ends included, within the region
+  float depth_x, depth_y, depth_0;  ///< depth = min(most, fma(depth_y, py, fma(depth_x, px, depth_0)))
+  float depth_most;
+  int left, bottom, right, top;  ///< pixels, ends included, within the region
 };
 
 /// Lanes of a vector within a block: their column and row offsets.
@@ -130,7 +131,8 @@ template <class Visit>
 inline bool visit_block(const Target& target, const FillTriangle& t, const BlockWalk& walk,
                         const Ints lane_edge[3], const LaneOffsets& lanes, int bx, int by, Visit&& visit) {
   const int x = target.x0 + bx * k_block, y = target.y0 + by * k_block;
-  const Floats depth_x = all(t.depth_x), depth_y = all(t.depth_y), depth_0 = all(t.depth_0), one = all(1.0f);
+  const Floats depth_x = all(t.depth_x), depth_y = all(t.depth_y), depth_0 = all(t.depth_0),
+               most = all(t.depth_most);
   // Vectors shorter than a row take two columns in turn, longer ones several rows at once.
   constexpr int k_vectors_a_row = k_lanes < k_block ? k_block / k_lanes : 1;
   constexpr int k_rows_a_vector = k_lanes > k_block ? k_lanes / k_block : 1;
@@ -147,7 +149,7 @@ inline bool visit_block(const Target& target, const FillTriangle& t, const Block
     Floats py = all(static_cast<float>(y)) + lanes.row_f;
     for (int row = 0; row < k_block; row += k_rows_a_vector, py = py + next_row) {
       for (int part = 0; part < k_vectors_a_row; ++part) {
-        const Floats depth = min(fused_multiply_add(depth_y, py, along_row[part]), one);
+        const Floats depth = min(fused_multiply_add(depth_y, py, along_row[part]), most);
         changed |= visit(first_pixel + row * k_block + part * k_lanes, EveryLane{}, depth);
       }
     }
@@ -167,7 +169,7 @@ inline bool visit_block(const Target& target, const FillTriangle& t, const Block
       const Ints edges = part == 0
                              ? edge[0] | edge[1] | edge[2]
                              : (edge[0] + part_step[0]) | (edge[1] + part_step[1]) | (edge[2] + part_step[2]);
-      const Floats depth = min(fused_multiply_add(depth_y, py, along_row[part]), one);
+      const Floats depth = min(fused_multiply_add(depth_y, py, along_row[part]), most);
       changed |= visit(first_pixel + row * k_block + part * k_lanes, edges > all(-1), depth);
     }
     for (int e = 0; e < 3; ++e) edge[e] = edge[e] + edge_step[e];
@@ -263,6 +265,36 @@ inline std::uint32_t fill_blended(Target& target, const FillTriangle& triangle, 
     return false;
   });
   return pixels;
+}
+
+/// Blocks of a target, ends included; none while right < left.
+struct BlockRectangle {
+  int left = 1, bottom = 1, right = 0, top = 0;
+
+  [[nodiscard]] bool empty() const { return right < left; }
+  [[nodiscard]] int area() const { return empty() ? 0 : (right - left + 1) * (top - bottom + 1); }
+  void add(int bx, int by) {
+    if (empty()) {
+      left = right = bx;
+      bottom = top = by;
+      return;
+    }
+    if (bx < left) left = bx;
+    if (bx > right) right = bx;
+    if (by < bottom) bottom = by;
+    if (by > top) top = by;
+  }
+};
+
+/// Adds the blocks in which the triangle lies in front of the image somewhere.
+inline void find_in_front(Target& target, const FillTriangle& triangle, const LaneOffsets& lanes,
+                          BlockRectangle& found) {
+  for_each_covered(target, triangle, lanes, [&](int pixel, auto inside, Floats depth) {
+    if (bits(inside & (depth > load(target.depth + pixel))) == 0) return false;
+    const int block = pixel / k_block_pixels;
+    found.add(block % target.blocks_x, block / target.blocks_x);
+    return false;
+  });
 }
 
 }  // namespace sightline::raster::SIGHTLINE_LANES

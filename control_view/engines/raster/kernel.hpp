@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string_view>
@@ -56,9 +57,17 @@ struct KernelScene {
   const Aabb* bounds;  ///< by object, scene frame
 };
 
+/// Where something showed: pixels of the whole image, ends included and whole blocks, and a depth that it is
+/// nowhere nearer than.
+struct ShownIn {
+  std::int32_t left, bottom, right, top;
+  float nearest;
+};
+
 struct RegionCount {
   std::uint32_t object;
   std::uint32_t pixels;
+  ShownIn shown;
 };
 
 /// What one worker draws into. The blocks lie row by row; pixels outside the region hold a depth nearer than
@@ -73,6 +82,7 @@ struct RegionMemory {
   // Each as long as there are ranks.
   std::uint32_t* drawn_in;        ///< the round a cluster was last drawn in
   std::uint32_t* pixels_of_rank;  ///< zero between rounds
+  ShownIn* shown_of_rank;         ///< of the ranks that own a pixel
   std::uint32_t* seen_ranks;      ///< those that own a pixel, in no order
 
   /// By item: twice the round in which it was found out whether it is cut, and one if it is.
@@ -89,6 +99,12 @@ struct RegionMemory {
   std::int32_t blended_draws = 0;  ///< goes on from call to call, so that marks need no clearing
 };
 
+/// An object that is looked for by its box alone, once everything else is drawn.
+struct BoxedItem {
+  Aabb box;  ///< scene frame
+  std::uint32_t object = 0;
+};
+
 /// One region of one view.
 struct RegionJob {
   const KernelScene* scene = nullptr;
@@ -96,6 +112,8 @@ struct RegionJob {
   RasterRegion region;
   const std::uint32_t* first = nullptr;  ///< ranks to begin with: what showed last, nearest first
   std::uint32_t first_count = 0;
+  const BoxedItem* boxes = nullptr;
+  std::uint32_t box_count = 0;
 };
 
 struct RegionResult {
@@ -105,30 +123,85 @@ struct RegionResult {
   std::uint64_t drawn_triangles;
 };
 
+/// Farthest that a depth image is eroded, pixels: what its border holds on every side.
+inline constexpr int k_most_erosion = 8;
+
+/// Depths of a whole view, row by row from the bottom, with a border of k_most_erosion pixels (and k_padding
+/// more at the end) nearer than anything.
+struct DepthImage {
+  float* first = nullptr;  ///< of pixel 0, 0
+  std::int32_t stride = 0;
+
+  [[nodiscard]] float* at(std::int32_t x, std::int32_t y) const {
+    return first + static_cast<std::ptrdiff_t>(y) * stride + x;
+  }
+};
+
+/// By how many pixels a surface is taken to be smaller: linear in its depth (1 near, 0 far), as the way is
+/// that a point moves in the image when the eye does.
+struct ErosionRadius {
+  float at_far_px = 1.0f;
+  float per_depth_px = 0.0f;
+};
+
+/// One region of a view that has been drawn: what did not show in it but might?
+struct ProbeJob {
+  const KernelScene* scene = nullptr;
+  const RasterView* view = nullptr;
+  RasterRegion region;
+  DepthImage image;
+  ErosionRadius radius;
+  int rim_blocks = 0;       ///< blocks along the region's edges that are only there to be looked at
+  bool both_sides = false;  ///< faces that turn away too: another eye may see their fronts
+  const std::uint8_t* known = nullptr;  ///< by object: not 0 for those that need no probe; null: none
+  /// These objects alone; null: whatever the hierarchy holds.
+  const std::uint32_t* candidates = nullptr;
+  std::uint32_t candidate_count = 0;
+  /// Open blocks of an object are looked for until the rectangle around them is larger than this.
+  int enough_blocks = 0;
+};
+
 /// Draws what the region shows of the scene and counts it into memory.counts. One for each instruction set;
 /// all give the same counts.
 using DrawRegion = RegionResult (*)(const RegionJob& job, RegionMemory& memory);
 
+/// Of the objects that are not known, those with a triangle that somewhere lies in front of the eroded depth:
+/// one entry each in memory.counts, its `pixels` the blocks of the rectangle around those found open, `shown`
+/// that rectangle, or the object's box where it is larger than enough_blocks. What the memory's image held is
+/// lost. A triangle is taken as large as the pixels it touches, and everywhere as near as its nearest point
+/// within the pixel: errs towards finding.
+using ProbeRegion = RegionResult (*)(const ProbeJob& job, RegionMemory& memory);
+
+/// Copies the region last drawn into a whole view's depth.
+using CopyDepth = void (*)(const RasterRegion& region, const RegionMemory& memory, const DepthImage& image);
+
+/// What each instruction set has.
+struct KernelFunctions {
+  DrawRegion draw;
+  CopyDepth copy_depth;
+  ProbeRegion probe;
+};
+
 struct RasterKernel {
   std::string_view name;
   bool supported = false;  ///< by this machine
-  DrawRegion draw = nullptr;
+  const KernelFunctions* functions = nullptr;
 };
 
 /// Best first.
 [[nodiscard]] std::span<const RasterKernel> raster_kernels();
 
 namespace avx512 {
-RegionResult draw_region(const RegionJob& job, RegionMemory& memory);
+extern const KernelFunctions k_functions;
 }
 namespace avx2 {
-RegionResult draw_region(const RegionJob& job, RegionMemory& memory);
+extern const KernelFunctions k_functions;
 }
 namespace sse41 {
-RegionResult draw_region(const RegionJob& job, RegionMemory& memory);
+extern const KernelFunctions k_functions;
 }
 namespace plain {
-RegionResult draw_region(const RegionJob& job, RegionMemory& memory);
+extern const KernelFunctions k_functions;
 }
 
 }  // namespace sightline::raster

@@ -15,10 +15,10 @@ bool has_avx512() {
 
 std::span<const RasterKernel> raster_kernels() {
   static const std::array<RasterKernel, 4> k_kernels{{
-      {"avx512", has_avx512(), avx512::draw_region},
-      {"avx2", __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("fma") != 0, avx2::draw_region},
-      {"sse41", __builtin_cpu_supports("sse4.1") != 0, sse41::draw_region},
-      {"plain", true, plain::draw_region},
+      {"avx512", has_avx512(), &avx512::k_functions},
+      {"avx2", __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("fma") != 0, &avx2::k_functions},
+      {"sse41", __builtin_cpu_supports("sse4.1") != 0, &sse41::k_functions},
+      {"plain", true, &plain::k_functions},
   }};
   return k_kernels;
 }

@@ -12,14 +12,18 @@
 #include "common/error.hpp"
 #include "common/gl/gpu_scene.hpp"
 #include "common/object_hierarchy.hpp"
+#include "control_view/engines/boxed_objects.hpp"
 #include "control_view/engines/histogram.hpp"
 #include "control_view/engines/last_seen.hpp"
 #include "control_view/engines/moved_objects.hpp"
 #include "control_view/engines/raster/kernel.hpp"
+#include "control_view/engines/raster/near_objects.hpp"
 #include "control_view/engines/raster/nearest_first.hpp"
 #include "control_view/engines/raster/raster_scene.hpp"
 #include "control_view/engines/raster/region_worker.hpp"
 #include "control_view/engines/raster/strips.hpp"
+#include "control_view/engines/raster/whole_depth.hpp"
+#include "control_view/engines/seen_directions.hpp"
 #include "control_view/engines/stopwatch.hpp"
 #include "control_view/engines/worker_threads.hpp"
 
@@ -43,6 +47,35 @@ RasterView view_of(const Eye& eye, const glm::dvec3& world_origin_m, ImageSize i
   return view;
 }
 
+/// Per the docstring of ErosionRadius. The way of a point in the image is the eye's, over its distance, in
+/// pixels of a flat image: up to a quarter more away from the middle.
+raster::ErosionRadius erosion_of(const ViewDoubt& doubt, const Eye& eye, ImageSize image) {
+  raster::ErosionRadius radius;
+  radius.at_far_px = static_cast<float>(doubt.sample_px);
+  const glm::dmat4& m = eye.clip_from_camera;
+  if (doubt.position_m <= 0.0 || m[2][3] != -1.0 || !(m[3][2] < 0.0)) return radius;
+  constexpr double k_off_axis = 1.25;
+  const double focal_px = 0.5 * std::max(m[0][0] * image.width, m[1][1] * image.height);
+  const double px_times_m = k_off_axis * focal_px * doubt.position_m;
+  // One over the distance along the view's axis is linear in the depth.
+  radius.at_far_px += static_cast<float>(px_times_m * std::max(0.0, (1.0 + m[2][2]) / m[3][2]));
+  radius.per_depth_px = static_cast<float>(px_times_m * -2.0 / m[3][2]);
+  return radius;
+}
+
+/// The nearest depth of a view in and around a rectangle.
+float nearest_depth(const raster::DepthImage& image, const raster::ShownIn& in, ImageSize size) {
+  float nearest = 0.0f;
+  const auto last_x = static_cast<std::int32_t>(size.width) - 1,
+             last_y = static_cast<std::int32_t>(size.height) - 1;
+  for (std::int32_t y = std::max(in.bottom - 1, 0); y <= std::min(in.top + 1, last_y); ++y) {
+    for (std::int32_t x = std::max(in.left - 1, 0); x <= std::min(in.right + 1, last_x); ++x) {
+      nearest = std::max(nearest, *image.at(x, y));
+    }
+  }
+  return nearest;
+}
+
 std::size_t blocks_of(const raster::RasterRegion& region) {
   const auto along = [](std::int32_t pixels) {
     return static_cast<std::size_t>((pixels + raster::k_block - 1) / raster::k_block);
@@ -52,7 +85,8 @@ std::size_t blocks_of(const raster::RasterRegion& region) {
 
 class RasterEngine final : public VisibilityEngine {
  public:
-  RasterEngine(const Scene& scene, std::uint32_t threads, raster::DrawRegion kernel, std::uint64_t most_ranks)
+  RasterEngine(const Scene& scene, std::uint32_t threads, const raster::KernelFunctions& kernel,
+               std::uint64_t most_ranks)
       : scene_(scene, threads, most_ranks),
         hierarchy_(scene.object_bounds),
         moved_(scene),
@@ -67,18 +101,17 @@ class RasterEngine final : public VisibilityEngine {
 
   void apply(const SceneEdits& edits) override {
     session_ = edits.owner;
-    const MovedObjects::Change& change = moved_.turn_to(edits);
-    if (change.ids.empty()) return;
-    scene_.set_transforms(change.ids, change.scene_from_object);
-    hierarchy_.move(change.ids, change.bounds);
+    edits_ = edits;
   }
 
   EngineStats count(const ViewQuery& query, PixelCounts& counts) override {
     EngineStats stats;
     Stopwatch watch;
+    place(query.boxed);
     plan(query);
     std::size_t blocks = 0;
     for (const Task& task : tasks_) blocks = std::max(blocks, blocks_of(task.job.region));
+    blocks = std::max(blocks, blocks_of({0, 0, raster::k_longest_closeup_px, raster::k_highest_closeup_px}));
     for (RegionWorker& worker : workers_) worker.begin(query.eyes.size(), blocks);
     stats.cull_s = watch.lap_s();
 
@@ -86,17 +119,21 @@ class RasterEngine final : public VisibilityEngine {
     const auto work = [&](std::uint32_t worker) {
       for (std::size_t i = next++; i < tasks_.size(); i = next++) draw(tasks_[i], workers_[worker], watch);
     };
-    if (tasks_.size() == 1) {
-      work(0);
-    } else {
-      threads_.run(work);
-    }
+    run(work);
     stats.draw_s = watch.lap_s();
 
     for (const Task& task : tasks_) task.strips->note_time(task.strip, task.time_s);
     const bool part = query.window.has_value();
-    for (std::size_t eye = 0; eye < query.eyes.size(); ++eye) add_counts_of(eye, part);
+    for (std::size_t eye = 0; eye < query.eyes.size(); ++eye) {
+      add_counts_of(eye, SeenDirections(query.eyes[eye], query.window ? query.window->image : query.size),
+                    part);
+    }
     sum_.take(counts);
+    if (query.doubt && !part) {
+      next = 0;
+      probe(query, counts, next);
+      stats.draw_s += watch.lap_s();
+    }
     for (const RegionWorker& worker : workers_) {
       stats.drawn_objects += worker.drawn_objects();
       stats.drawn_triangles += worker.drawn_triangles();
@@ -115,6 +152,144 @@ class RasterEngine final : public VisibilityEngine {
     double time_s = 0.0;
   };
 
+  template <class Work>
+  void run(Work&& work) {
+    if (tasks_.size() == 1) {
+      work(0);
+    } else {
+      threads_.run(work);
+    }
+  }
+
+  /// Adds to `counts` what the views leave open, beyond what they show.
+  void probe(const ViewQuery& query, PixelCounts& counts, std::atomic<std::size_t>& next) {
+    known_.resize(scene_.placements.size(), 0);
+    for (const ObjectId id : counts.ids) known_[index_of(id)] = 1;
+    run([&](std::uint32_t worker) {
+      for (std::size_t i = next++; i < tasks_.size(); i = next++) {
+        const Task& task = tasks_[i];
+        raster::ProbeJob job;
+        job.scene = &kernel_scene_;
+        job.view = task.job.view;
+        job.region = task.job.region;
+        job.image = depths_[task.eye].image();
+        job.radius = erosion_of(*query.doubt, query.eyes[task.eye], query.size);
+        job.known = known_.data();
+        job.both_sides = query.doubt->position_m > 0.0;
+        job.enough_blocks = raster::k_closeup_blocks;
+        workers_[worker].probe(kernel_, job, task.eye);
+      }
+    });
+    for (const ObjectId id : counts.ids) known_[index_of(id)] = 0;
+    for (std::size_t eye = 0; eye < query.eyes.size(); ++eye) {
+      const SeenDirections directions(query.eyes[eye], query.size);
+      const std::vector<std::uint32_t> closed = closed_by_looking_closer(query, eye);
+      for (const RegionWorker& worker : workers_) {
+        for (const RegionCount& open : worker.open_of(eye)) {
+          if (std::binary_search(closed.begin(), closed.end(), open.object)) continue;
+          const raster::ShownIn& in = open.shown;
+          sum_.add(ObjectId{open.object}, 1, directions.of(in.left, in.bottom, in.right, in.top, in.nearest));
+        }
+      }
+    }
+    append_near(query);
+    sum_.take(open_);
+    counts.open.ids.swap(open_.ids);
+    counts.open.extents.swap(open_.extents);
+  }
+
+  void append_near(const ViewQuery& query) {
+    if (query.doubt->near_reach_m <= 0.0) return;
+    near_.clear();
+    for (const Eye& eye : query.eyes) {
+      const glm::dvec3 eye_m = glm::dvec3(glm::inverse(eye.camera_from_world)[3]) - scene_.world_origin_m;
+      const auto reach_m = static_cast<float>(query.doubt->near_reach_m);
+      append_objects_near(scene_, hierarchy_, glm::vec3(eye_m), reach_m, near_);
+    }
+    for (const std::uint32_t object : near_) sum_.add(ObjectId{object}, 1, k_seen_anywhere);
+  }
+
+  /// The objects that were left open in few places, and that a closer look there neither shows nor leaves
+  /// open. Ascending.
+  std::vector<std::uint32_t> closed_by_looking_closer(const ViewQuery& query, std::size_t eye) {
+    const ImageSize fine{query.size.width * raster::k_closeup_scale,
+                         query.size.height * raster::k_closeup_scale};
+    if (fine.width > k_max_image_side || fine.height > k_max_image_side) return {};
+    const raster::ErosionRadius fine_radius = erosion_of(*query.doubt, query.eyes[eye], fine);
+    std::vector<std::uint32_t> kept;
+    std::vector<raster::OpenSpot> spots;
+    for (const RegionWorker& worker : workers_) {
+      for (const RegionCount& open : worker.open_of(eye)) {
+        if (open.pixels > static_cast<std::uint32_t>(raster::k_closeup_blocks)) {
+          kept.push_back(open.object);
+          continue;
+        }
+        const raster::ShownIn& in = open.shown;
+        // A closer look erodes no farther than any: where the eye's way is longer than that, it cannot say.
+        const float nearest = nearest_depth(depths_[eye].image(), in, query.size);
+        if (fine_radius.at_far_px + fine_radius.per_depth_px * nearest > raster::k_most_erosion) {
+          kept.push_back(open.object);
+          continue;
+        }
+        spots.push_back({open.object, in.left / raster::k_block, in.bottom / raster::k_block,
+                         in.right / raster::k_block, in.top / raster::k_block});
+      }
+    }
+    if (spots.empty()) return {};
+    const auto blocks = [](std::uint32_t pixels) {
+      return static_cast<std::int32_t>((pixels + raster::k_block - 1) / raster::k_block);
+    };
+    std::vector<raster::Closeup> closeups =
+        raster::closeups_of(spots, blocks(query.size.width), blocks(query.size.height), kept);
+    const RasterView view = view_of(query.eyes[eye], scene_.world_origin_m, fine);
+    for (raster::Closeup& closeup : closeups) {
+      closeup.scene = &kernel_scene_;
+      closeup.view = &view;
+      closeup.radius = fine_radius;
+      closeup.both_sides = query.doubt->position_m > 0.0;
+    }
+    std::vector<std::vector<std::uint32_t>> kept_by(workers_.size());
+    closeup_depths_.resize(workers_.size());
+    std::atomic<std::size_t> next{0};
+    const auto look = [&](std::uint32_t worker) {
+      for (std::size_t i = next++; i < closeups.size(); i = next++) {
+        workers_[worker].look_closer(kernel_, closeups[i], closeup_depths_[worker], kept_by[worker]);
+      }
+    };
+    if (closeups.size() < 2) {
+      look(0);
+    } else {
+      threads_.run(look);
+    }
+    for (const auto& list : kept_by) kept.insert(kept.end(), list.begin(), list.end());
+    std::sort(kept.begin(), kept.end());
+    std::vector<std::uint32_t> closed;
+    for (const raster::OpenSpot& spot : spots) {
+      if (!std::binary_search(kept.begin(), kept.end(), spot.object)) closed.push_back(spot.object);
+    }
+    std::sort(closed.begin(), closed.end());
+    return closed;
+  }
+
+  /// Makes every object stand where the edits say, but for those that the query looks for by their boxes.
+  void place(std::span<const BoxedObject> boxed) {
+    const MovedObjects::Change& change = moved_.turn_to(boxed.empty() ? edits_ : without(boxed));
+    if (change.ids.empty()) return;
+    scene_.set_transforms(change.ids, change.scene_from_object);
+    hierarchy_.move(change.ids, change.bounds);
+  }
+
+  [[nodiscard]] const SceneEdits& without(std::span<const BoxedObject> boxed) {
+    left_out_ = edits_;
+    left_out_.owner = 0;  // no session's: what comes next is never taken for the same
+    left_out_.version = ++left_out_version_;
+    for (const BoxedObject& object : boxed) left_out_.hidden.push_back(object.id);
+    std::sort(left_out_.hidden.begin(), left_out_.hidden.end());
+    left_out_.hidden.erase(std::unique(left_out_.hidden.begin(), left_out_.hidden.end()),
+                           left_out_.hidden.end());
+    return left_out_;
+  }
+
   void plan(const ViewQuery& query) {
     const ImageSize image = query.window ? query.window->image : query.size;
     const auto width = static_cast<std::int32_t>(query.size.width);
@@ -123,6 +298,18 @@ class RasterEngine final : public VisibilityEngine {
     if (first_.size() < query.eyes.size()) first_.resize(query.eyes.size());
     views_.clear();
     tasks_.clear();
+    probing_ = query.doubt.has_value() && !query.window;
+    if (probing_ && depths_.size() < query.eyes.size()) depths_.resize(query.eyes.size());
+    for (std::size_t eye = 0; probing_ && eye < query.eyes.size(); ++eye) depths_[eye].resize(query.size);
+    boxes_.resize(query.eyes.size());
+    for (std::size_t eye = 0; eye < query.eyes.size(); ++eye) {
+      boxes_[eye].clear();
+      for (const BoxedObject& object : query.boxed) {
+        boxes_[eye].push_back(
+            {widened_by_a_pixel(object.world_bounds, query.eyes[eye], image, scene_.world_origin_m),
+             index_of(object.id)});
+      }
+    }
     // Views first: tasks point at them.
     for (const Eye& eye : query.eyes) views_.push_back(view_of(eye, scene_.world_origin_m, image));
     for (std::size_t eye = 0; eye < query.eyes.size(); ++eye) {
@@ -146,6 +333,8 @@ class RasterEngine final : public VisibilityEngine {
           task.job.region.x += static_cast<std::int32_t>(query.window->x);
           task.job.region.y += static_cast<std::int32_t>(query.window->y);
         }
+        task.job.boxes = boxes_[eye].data();
+        task.job.box_count = static_cast<std::uint32_t>(boxes_[eye].size());
         task.job.first = first.data();
         task.job.first_count = static_cast<std::uint32_t>(first.size());
         task.eye = eye;
@@ -172,13 +361,18 @@ class RasterEngine final : public VisibilityEngine {
 
   void draw(Task& task, RegionWorker& worker, const Stopwatch& since_all_began) {
     worker.draw(kernel_, task.job, task.eye);
+    if (probing_) worker.copy_depth(kernel_, task.job.region, depths_[task.eye].image());
     // Since all began: a worker that wakes late is to get less.
     task.time_s = since_all_began.elapsed_s();
   }
 
-  void add_counts_of(std::size_t eye, bool part) {
+  void add_counts_of(std::size_t eye, const SeenDirections& directions, bool part) {
     for (const RegionWorker& worker : workers_) {
-      for (const RegionCount& count : worker.counts_of(eye)) sum_.add(ObjectId{count.object}, count.pixels);
+      for (const RegionCount& count : worker.counts_of(eye)) {
+        const raster::ShownIn& in = count.shown;
+        sum_.add(ObjectId{count.object}, count.pixels,
+                 directions.of(in.left, in.bottom, in.right, in.top, in.nearest));
+      }
     }
     // A part of a view says little about what the whole shows.
     if (part) return;
@@ -223,7 +417,7 @@ class RasterEngine final : public VisibilityEngine {
   ObjectHierarchy hierarchy_;
   MovedObjects moved_;
   CountAccumulator sum_;
-  raster::DrawRegion kernel_;
+  const raster::KernelFunctions& kernel_;
   WorkerThreads threads_;
   raster::KernelScene kernel_scene_;  ///< points into scene_ and hierarchy_, whose arrays stay where they are
   std::vector<RegionWorker> workers_;
@@ -232,8 +426,17 @@ class RasterEngine final : public VisibilityEngine {
   std::vector<std::vector<std::uint32_t>> first_;      ///< by eye: the ranks to begin with
   std::vector<std::unique_ptr<raster::Strips>> cuts_;  ///< by eye
   std::vector<RasterView> views_;
+  bool probing_ = false;
+  std::vector<raster::WholeDepth> depths_;  ///< by eye
+  std::vector<std::uint8_t> known_;         ///< by object, zero between queries
+  PixelCounts open_;
+  std::vector<std::uint32_t> near_;
+  std::vector<raster::WholeDepth> closeup_depths_;  ///< by worker
   std::vector<Task> tasks_;
   std::uint64_t session_ = 0;
+  SceneEdits edits_, left_out_;
+  std::uint64_t left_out_version_ = 0;
+  std::vector<std::vector<raster::BoxedItem>> boxes_;  ///< by eye
 };
 
 }  // namespace
@@ -247,7 +450,7 @@ std::unique_ptr<VisibilityEngine> make_raster_engine(const Scene& scene, const E
                                                      std::uint64_t most_ranks) {
   for (const raster::RasterKernel& kernel : raster::raster_kernels()) {
     if (kernel.supported && kernel.name == instruction_set) {
-      return std::make_unique<RasterEngine>(scene, options.threads, kernel.draw, most_ranks);
+      return std::make_unique<RasterEngine>(scene, options.threads, *kernel.functions, most_ranks);
     }
   }
   throw InputError("engine raster: this machine has no instruction set '" + std::string(instruction_set) +

@@ -12,10 +12,12 @@ RegionWorker::RegionWorker(const RasterScene& scene, bool any_blended)
       item_cut_(scene.items.size(), 0),
       object_drawn_in_(scene.placements.size(), 0),
       blended_candidates_(scene.placements.size(), 0),
+      shown_of_rank_(scene.owners.size()),
       region_counts_(scene.owners.size() + scene.placements.size()) {
   memory_.drawn_in = drawn_in_.data();
   memory_.pixels_of_rank = pixels_of_rank_.data();
   memory_.seen_ranks = seen_ranks_.data();
+  memory_.shown_of_rank = shown_of_rank_.data();
   memory_.item_cut = item_cut_.data();
   memory_.object_drawn_in = object_drawn_in_.data();
   memory_.blended_candidates = blended_candidates_.data();
@@ -25,9 +27,11 @@ RegionWorker::RegionWorker(const RasterScene& scene, bool any_blended)
 void RegionWorker::begin(std::size_t eyes, std::size_t blocks) {
   if (counts_.size() < eyes) {
     counts_.resize(eyes);
+    open_.resize(eyes);
     seen_.resize(eyes);
   }
   for (auto& counts : counts_) counts.clear();
+  for (auto& open : open_) open.clear();
   for (auto& seen : seen_) seen.clear();
   drawn_objects_ = 0;
   drawn_triangles_ = 0;
@@ -61,13 +65,58 @@ void RegionWorker::begin_round() {
   }
 }
 
-void RegionWorker::draw(DrawRegion kernel, const RegionJob& job, std::size_t eye) {
+void RegionWorker::draw(const KernelFunctions& kernel, const RegionJob& job, std::size_t eye) {
   begin_round();
-  const RegionResult result = kernel(job, memory_);
+  const RegionResult result = kernel.draw(job, memory_);
   counts_[eye].insert(counts_[eye].end(), memory_.counts, memory_.counts + result.count_count);
   seen_[eye].insert(seen_[eye].end(), memory_.seen_ranks, memory_.seen_ranks + result.seen_count);
   drawn_objects_ += result.drawn_objects;
   drawn_triangles_ += result.drawn_triangles;
+}
+
+void RegionWorker::probe(const KernelFunctions& kernel, const ProbeJob& job, std::size_t eye) {
+  begin_round();
+  const RegionResult result = kernel.probe(job, memory_);
+  open_[eye].insert(open_[eye].end(), memory_.counts, memory_.counts + result.count_count);
+  drawn_triangles_ += result.drawn_triangles;
+}
+
+void RegionWorker::look_closer(const KernelFunctions& kernel, const Closeup& closeup, WholeDepth& depth,
+                               std::vector<std::uint32_t>& kept) {
+  RegionJob draw;
+  draw.scene = closeup.scene;
+  draw.view = closeup.view;
+  draw.region = closeup.region;
+  begin_round();
+  const RegionResult shown = kernel.draw(draw, memory_);
+  drawn_triangles_ += shown.drawn_triangles;
+  std::vector<std::uint32_t> seen;
+  for (std::uint32_t i = 0; i < shown.count_count; ++i) seen.push_back(memory_.counts[i].object);
+  std::sort(seen.begin(), seen.end());
+  std::vector<std::uint32_t> unseen;
+  for (const std::uint32_t object : closeup.candidates) {
+    (std::binary_search(seen.begin(), seen.end(), object) ? kept : unseen).push_back(object);
+  }
+  if (unseen.empty()) return;
+
+  // Every closer look has room in it; what a smaller one leaves of the last lies beyond its rim.
+  depth.resize({k_longest_closeup_px, k_highest_closeup_px});
+  ProbeJob probe;
+  probe.scene = closeup.scene;
+  probe.view = closeup.view;
+  probe.region = closeup.region;
+  probe.image = depth.image();
+  probe.image.first -= closeup.region.y * probe.image.stride + closeup.region.x;
+  probe.radius = closeup.radius;
+  probe.rim_blocks = 1;
+  probe.both_sides = closeup.both_sides;
+  probe.candidates = unseen.data();
+  probe.candidate_count = static_cast<std::uint32_t>(unseen.size());
+  kernel.copy_depth(closeup.region, memory_, probe.image);
+  begin_round();
+  const RegionResult open = kernel.probe(probe, memory_);
+  drawn_triangles_ += open.drawn_triangles;
+  for (std::uint32_t i = 0; i < open.count_count; ++i) kept.push_back(memory_.counts[i].object);
 }
 
 }  // namespace sightline::raster

@@ -38,7 +38,10 @@ inline bool winding_survives_clipping(const Batch& b, int lane, bool mirrored) {
 /// by step: eight bits of sub-pixels, pixel centres on whole positions, left and lower edges inclusive,
 /// winding by the snapped area, the depth plane through the unsnapped corners with its first corner as the
 /// reference.
-template <class Draw>
+///
+/// `grown`: triangles as large as the pixels they touch, and nowhere nearer than their nearest corner. A
+/// pixel at a sharp corner may be taken that the triangle does not touch.
+template <bool grown = false, class Draw>
 inline void set_up(const Target& target, const Batch& batch, bool double_sided, bool mirrored, Draw&& draw) {
   const Floats half = all(0.5f), subpixels = all(k_subpixels);
   Floats fx[3], fy[3], fz[3];
@@ -50,11 +53,13 @@ inline void set_up(const Target& target, const Batch& batch, bool double_sided, 
     x[c] = round_to_int((fx[c] - half) * subpixels);
     y[c] = round_to_int((fy[c] - half) * subpixels);
   }
-  // The first pixel centre at or after a position, the last at or before it.
-  const Ints left = shift_right<8>(min(min(x[0], x[1]), x[2]) + all(255));
-  const Ints right = shift_right<8>(max(max(x[0], x[1]), x[2]));
-  const Ints bottom = shift_right<8>(min(min(y[0], y[1]), y[2]) + all(255));
-  const Ints top = shift_right<8>(max(max(y[0], y[1]), y[2]));
+  // The first pixel centre at or after a position, the last at or before it; of pixels touched, half a pixel
+  // farther out.
+  constexpr std::int32_t k_reach = grown ? 128 : 0;
+  const Ints left = shift_right<8>(min(min(x[0], x[1]), x[2]) + all(255 - k_reach));
+  const Ints right = shift_right<8>(max(max(x[0], x[1]), x[2]) + all(k_reach));
+  const Ints bottom = shift_right<8>(min(min(y[0], y[1]), y[2]) + all(255 - k_reach));
+  const Ints top = shift_right<8>(max(max(y[0], y[1]), y[2]) + all(k_reach));
   const Ints region_left = all(target.x0), region_right = all(target.x0 + target.width - 1);
   const Ints region_bottom = all(target.y0), region_top = all(target.y0 + target.height - 1);
   // A corner that is not finite, or stands for none.
@@ -107,12 +112,15 @@ inline void set_up(const Target& target, const Batch& batch, bool double_sided, 
   const Floats z01 = z0 - z1, z20 = z2 - z0;
   const Floats depth_x = z01 * dy20 - z20 * dy01;
   const Floats depth_y = z20 * dx01 - z01 * dx20;
-  const Floats depth_0 = z0 - (depth_x * (x0 - half) + depth_y * (y0 - half));
+  Floats depth_0 = z0 - (depth_x * (x0 - half) + depth_y * (y0 - half));
+  if constexpr (grown) depth_0 = depth_0 + half * (magnitude(depth_x) + magnitude(depth_y));
 
   float plane_x[k_lanes], plane_y[k_lanes], plane_0[k_lanes];
   store(plane_x, depth_x);
   store(plane_y, depth_y);
   store(plane_0, depth_0);
+  float nearest[k_lanes];
+  if constexpr (grown) store(nearest, max(max(z0, z1), z2));
   std::int32_t lefts[k_lanes], rights[k_lanes], bottoms[k_lanes], tops[k_lanes];
   store(lefts, max(left, region_left));
   store(rights, min(right, region_right));
@@ -134,7 +142,9 @@ inline void set_up(const Target& target, const Batch& batch, bool double_sided, 
       const std::int64_t at = std::int64_t{dy} * ix[from][lane] - std::int64_t{dx} * iy[from][lane];
       const bool inclusive = dy < 0 || (dy == 0 && dx > 0);
       t.at_origin[i] = (inclusive ? at : at - 1) >> 8;
+      if constexpr (grown) t.at_origin[i] += (dx < 0 ? -dx : dx) / 2 + (dy < 0 ? -dy : dy) / 2 + 1;
     }
+    t.depth_most = grown ? nearest[lane] : 1.0f;
     t.depth_x = plane_x[lane];
     t.depth_y = plane_y[lane];
     t.depth_0 = plane_0[lane];
