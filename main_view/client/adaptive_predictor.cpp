@@ -23,6 +23,8 @@ constexpr double k_surprise_memory_s = 1.0;
 constexpr double k_stray_share = 0.25;  // of a stray's distance, to get used to: the next may come in a while
 constexpr std::size_t k_least_poses_to_doubt = 3;
 
+constexpr std::size_t k_first_poses = 3;  // with fewer, a motion's speed is hardly known
+
 /// Between two samples: linear in position, slerp in rotation.
 Pose between(const TimedPose& before, const TimedPose& after, double time_s) {
   const double u = (time_s - before.time_s) / (after.time_s - before.time_s);
@@ -135,6 +137,7 @@ void AdaptivePredictor::take_believed(const TimedPose& sample) {
   if (!samples_.empty()) {
     judge_forecasts(samples_.back(), sample);
     get_used_to(surprise_of(sample), 1.0, sample.time_s - samples_.back().time_s);
+    has_moved_ = has_moved_ || sample.pose != samples_.back().pose;
   }
   samples_.push_back(sample);
   if (samples_.size() > k_fit_bank_window) samples_.erase(samples_.begin());
@@ -163,8 +166,9 @@ void AdaptivePredictor::judge_forecasts(const TimedPose& before, const TimedPose
       const LocalMotion error = truth - forecast.motion;
       const double overlap = forecast.lead_s / step_s;
       // Below a nanometre and its like an error is rounding.
-      lead.region_m.learn(translation_m(error), forecast.doubt_m, forecast.radius_m + 1e-9, memory, overlap);
-      lead.region_rad.learn(turn_rad(error), forecast.doubt_rad, forecast.radius_rad + 1e-9, memory, overlap);
+      Regions& regions = record.first ? lead.first_regions : lead.regions;
+      regions.m.learn(translation_m(error), forecast.doubt_m, forecast.radius_m + 1e-9, memory, overlap);
+      regions.rad.learn(turn_rad(error), forecast.doubt_rad, forecast.radius_rad + 1e-9, memory, overlap);
       lead.blend.learn(motions_at(record.bank, forecast.lead_s), truth, keep);
     }
   }
@@ -176,7 +180,7 @@ double AdaptivePredictor::pose_interval_s() const noexcept {
 }
 
 void AdaptivePredictor::make_record() {
-  Record record{samples_.back(), fit_bank(samples_), {}};
+  Record record{samples_.back(), fit_bank(samples_), samples_.size() < k_first_poses, {}};
   const double interval_s = pose_interval_s();
   double nominal_s = k_shortest_lead_s;
   double likely_m = 0.0;
@@ -195,12 +199,27 @@ void AdaptivePredictor::make_record() {
     const Lead& lead = leads_[i];
     forecast.doubt_m = {translation_m(spread), translation_m(motions[0])};
     forecast.doubt_rad = {turn_rad(spread), turn_rad(motions[0])};
-    forecast.radius_m = lead.region_m.radius(forecast.doubt_m, likely_m);
-    forecast.radius_rad = lead.region_rad.radius(forecast.doubt_rad, likely_rad);
-    likely_m = lead.region_m.likely_error(likely_m);
-    likely_rad = lead.region_rad.likely_error(likely_rad);
+    announce(record, lead, likely_m, likely_rad, forecast);
+    likely_m = lead.regions.m.likely_error(likely_m);
+    likely_rad = lead.regions.rad.likely_error(likely_rad);
   }
   records_.push_back(record);
+}
+
+/// The forecast's radii; its motion and doubts are there already.
+void AdaptivePredictor::announce(const Record& record, const Lead& lead, double likely_m, double likely_rad,
+                                 Forecast& forecast) const {
+  forecast.radius_m = lead.regions.m.radius(forecast.doubt_m, likely_m);
+  forecast.radius_rad = lead.regions.rad.radius(forecast.doubt_rad, likely_rad);
+  if (record.first) {
+    forecast.radius_m = std::max(forecast.radius_m, lead.first_regions.m.radius(forecast.doubt_m, 0.0));
+    forecast.radius_rad =
+        std::max(forecast.radius_rad, lead.first_regions.rad.radius(forecast.doubt_rad, 0.0));
+  }
+  if (!has_moved_) return;
+  const double half_square = 0.5 * squared(forecast.lead_s);
+  forecast.radius_m = std::max(forecast.radius_m, k_start_m_per_s2 * half_square);
+  forecast.radius_rad = std::max(forecast.radius_rad, k_start_turn_rad_per_s2 * half_square);
 }
 
 void AdaptivePredictor::drop_old_records() {

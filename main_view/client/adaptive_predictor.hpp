@@ -24,7 +24,9 @@ namespace sightline {
 /// own frame, as in S. M. LaValle, A. Yershova, M. Katsev, M. Antonov, "Head Tracking for the Oculus Rift",
 /// 2014, who predict with a constant rate or a constant acceleration of that vector.
 ///
-/// The announced region is learnt in the same way, see ErrorRegion.
+/// The announced region is learnt in the same way, see ErrorRegion. In no past is the first turn after a long
+/// calm, so the region is never smaller than what a head that begins to move may do: k_start_turn_rad_per_s2
+/// and k_start_m_per_s2 over the lead. A camera that never moved announces none.
 ///
 /// What was learnt outlives pauses and jumps; the poses do not. A pose far from all that the motion so far
 /// explains is not believed until the next one bears it out: a single stray pose moves no prediction, and
@@ -32,6 +34,9 @@ namespace sightline {
 class AdaptivePredictor {
  public:
   AdaptivePredictor();
+
+  static constexpr double k_start_turn_rad_per_s2 = 7.0;  ///< 400 degrees/s^2: a brisk glance
+  static constexpr double k_start_m_per_s2 = 0.5;         ///< someone who sets off gently
 
   /// Takes in the poses that the history has got since the last call. A history that was cleared meanwhile
   /// starts a new motion.
@@ -56,13 +61,19 @@ class AdaptivePredictor {
   struct Record {
     TimedPose at;
     FitBank bank;
+    bool first = false;  ///< made from the first poses of a motion, which hardly tell its speed
     std::array<Forecast, k_lead_count> forecasts;
+  };
+  /// How far off, metres and radians.
+  struct Regions {
+    ErrorRegion m;
+    ErrorRegion rad;
   };
   struct Lead {
     FitBlend blend;
-    ErrorRegion region_m;
-    ErrorRegion region_rad;
-    std::size_t next = 0;  ///< first record whose forecast has not been judged
+    Regions regions;
+    Regions first_regions;  ///< of first records, which are no measure for the others
+    std::size_t next = 0;   ///< first record whose forecast has not been judged
   };
 
   void forget_motion();
@@ -75,6 +86,8 @@ class AdaptivePredictor {
   void get_used_to(const LocalMotion& surprise, double share, double step_s) noexcept;
   void judge_forecasts(const TimedPose& before, const TimedPose& now);
   void make_record();
+  void announce(const Record& record, const Lead& lead, double likely_m, double likely_rad,
+                Forecast& forecast) const;
   void drop_old_records();
   /// For any lead, between the learnt ones.
   [[nodiscard]] Forecast forecast_at(const Record& record, double lead_s) const;
@@ -85,6 +98,7 @@ class AdaptivePredictor {
   std::deque<Record> records_;
   std::array<Lead, k_lead_count> leads_;
   std::size_t next_solved_ = 0;
+  bool has_moved_ = false;   ///< ever: two poses differed
   double surprise_m_ = 0.0;  ///< largest of late by which a pose differed from the one expected next
   double surprise_rad_ = 0.0;
   std::optional<TimedPose> newest_;  ///< taken from the history, believed or not

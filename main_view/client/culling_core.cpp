@@ -5,8 +5,11 @@
 #include <string>
 #include <utility>
 
+#include <glm/mat2x3.hpp>
+
 #include "common/error.hpp"
 #include "main_view/client/field_coverage.hpp"
+#include "main_view/client/seen_in_view.hpp"
 
 namespace sightline {
 namespace {
@@ -21,9 +24,19 @@ bool is_finite(const Matrix& matrix) {
   return true;
 }
 
-glm::dvec3 position_of(const Eye& eye) noexcept {
-  const glm::dmat4& m = eye.camera_from_world;
-  return -(glm::transpose(glm::dmat3(m)) * glm::dvec3(m[3]));
+/// Answers come this much later than the interval between them says, at times.
+constexpr double k_interval_slack = 1.25;
+
+void require_finite(std::span<const MovedObject> objects) {
+  for (const MovedObject& object : objects) {
+    const Aabb& bounds = object.object_bounds;
+    if (is_finite(object.world_from_object) &&
+        (bounds.empty() || is_finite(glm::mat2x3(bounds.min, bounds.max)))) {
+      continue;
+    }
+    throw InputError("move of object " + std::to_string(index_of(object.id)) +
+                     " is not finite: give a placement and the object's own bounds");
+  }
 }
 
 CullingOptions validated(CullingOptions options) {
@@ -82,20 +95,27 @@ void CullingCore::add_pose(const TimedPose& head) {
   }
   if (added != PoseHistory::Added::continued) predictor_.forget_pending();
   predictor_.observe(history_);
+  if (head.time_s > frame_s_) last_frame_s_ = std::exchange(frame_s_, head.time_s);
 }
 
-void CullingCore::move_objects(std::span<const ObjectMove> moves) {
-  for (const ObjectMove& move : moves) {
-    if (is_finite(move.world_from_object)) continue;
-    throw InputError("move of object " + std::to_string(index_of(move.id)) +
-                     " is not finite: give a placement");
-  }
-  for (const ObjectMove& move : moves) {
-    const auto held = placements_.find(move.id);
-    if (held != placements_.end() && held->second.world_from_object == move.world_from_object) continue;
-    placements_[move.id] = {move.world_from_object, 0, false};
-    drop_sets();
-  }
+void CullingCore::declare_objects(std::span<const MovedObject> objects) {
+  require_finite(objects);
+  moving_.declare(objects);
+}
+
+void CullingCore::move_objects(double now_s, std::span<const MovedObject> objects) {
+  if (!std::isfinite(now_s)) throw InputError("time of moved objects is not finite: give seconds");
+  require_finite(objects);
+  const double before_s = frame_s_ < now_s ? frame_s_ : last_frame_s_;
+  if (!moving_.move(now_s, before_s, objects)) drop_sets();
+}
+
+void CullingCore::hide_objects(std::span<const ObjectId> ids) {
+  if (!moving_.hide(ids)) drop_sets();
+}
+
+void CullingCore::show_objects(std::span<const ObjectId> ids) {
+  moving_.show(ids);
 }
 
 double CullingCore::guard_rad(const PredictedPose& predicted) const noexcept {
@@ -122,21 +142,20 @@ ViewRequest CullingCore::make_request(double now_s, ImageSize main_size) {
     request.rotation_error_rad = guard_rad(predicted);
     request.position_error_m = predicted.position_error_m;
   }
-  for (auto& [id, placement] : placements_) {
-    if (placement.acknowledged) continue;
-    if (placement.first_request_seq == 0) placement.first_request_seq = request.request_seq;
-    request.moves.push_back({id, placement.world_from_object});
-  }
+  MovingObjects::Usage usage;
+  usage.interval_s = horizon_.answer_interval_s();
+  usage.from_s = request.for_time_s - use_lead_.upper();
+  usage.until_s = request.for_time_s + k_interval_slack * usage.interval_s;
+  usage.keep_s = options_.max_staleness_s + options_.max_horizon_s + 1.0;
+  moving_.write(request, now_s, usage);
   return request;
 }
 
 void CullingCore::accept(const ViewRequest& request, double issued_s, const VisibleSet& set,
                          double received_s) {
   horizon_.observe(issued_s, received_s);
-  for (auto& [id, placement] : placements_) {
-    const std::uint64_t first = placement.first_request_seq;
-    if (first != 0 && request.request_seq >= first) placement.acknowledged = true;
-  }
+  use_lead_.add(std::max(request.for_time_s - received_s, 0.0));
+  moving_.acknowledge(request.request_seq);
   if (request.request_seq < first_valid_request_seq_) return;
   reset_pending_ = false;
   timeline_.drop_before(received_s - options_.max_staleness_s);
@@ -147,7 +166,7 @@ void CullingCore::forget_sets() {
   drop_sets();
   reset_pending_ = true;
   horizon_.restart_interval();
-  for (auto& [id, placement] : placements_) placement = {placement.world_from_object, 0, false};
+  moving_.forget_told();
 }
 
 bool CullingCore::usable(const FiledSet& filed, double now_s, std::span<const Eye> eyes) const {
@@ -168,6 +187,7 @@ bool CullingCore::usable(const FiledSet& filed, double now_s, std::span<const Ey
 FrameDecision CullingCore::decide(double now_s, std::span<const Eye> eyes) const {
   FrameDecision decision;
   decision.eye_count = eyes.size();
+  decision.moved = moving_.judge({});
   const FiledSet* last = timeline_.last_at_or_before(now_s);
   const std::span<const FiledSet> next = timeline_.all_after(now_s);
   if (last == nullptr && next.empty()) return decision;
@@ -180,6 +200,7 @@ FrameDecision CullingCore::decide(double now_s, std::span<const Eye> eyes) const
     if (!usable(filed, now_s, eyes)) continue;
     used.push_back(&filed);
     if (!decision.next_lead_s) decision.next_lead_s = filed.request.for_time_s - now_s;
+    if (!options_.unite_all_later_sets) break;
   }
   if (used.empty()) {
     decision.fallback = Fallback::stale;
@@ -187,9 +208,10 @@ FrameDecision CullingCore::decide(double now_s, std::span<const Eye> eyes) const
   }
 
   decision.fallback = Fallback::none;
+  decision.moved = moving_.judge(used);
   std::vector<bool> covered(eyes.size(), false);
   for (const FiledSet* filed : used) {
-    decision.visible.unite(filed->set);
+    decision.visible.unite(seen_in_view(*filed, eyes));
     for (std::size_t i = 0; i < eyes.size(); ++i) {
       const Eye& requested = filed->request.eyes[i];
       decision.tested.push_back(tested_field(requested, filed->request.rotation_error_rad));
@@ -197,7 +219,8 @@ FrameDecision CullingCore::decide(double now_s, std::span<const Eye> eyes) const
       if (decision.fields.back().cuts.empty()) covered[i] = true;
     }
   }
-  decision.field_covered = std::find(covered.begin(), covered.end(), false) == covered.end();
+  decision.field_covered =
+      !options_.draw_untested || std::find(covered.begin(), covered.end(), false) == covered.end();
   return decision;
 }
 

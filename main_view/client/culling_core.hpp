@@ -2,7 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <map>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -15,6 +15,7 @@
 #include "main_view/client/field_coverage.hpp"
 #include "main_view/client/horizon_estimator.hpp"
 #include "main_view/client/motion_predictor.hpp"
+#include "main_view/client/moving_objects.hpp"
 #include "main_view/client/pose_history.hpp"
 #include "main_view/client/visible_set_timeline.hpp"
 #include "protocol/messages.hpp"
@@ -34,7 +35,7 @@ struct RigEye {
 
 enum class Fallback {
   none,
-  no_set,  ///< nothing has arrived yet, or since the last jump, moved object, new rig or lost session
+  no_set,  ///< nothing has arrived yet, or since the last jump, new rig or lost session
   stale    ///< the nearest sets are too far from now
 };
 
@@ -49,8 +50,9 @@ class FrameDecision {
  public:
   /// Whether to draw the object. Errs towards true: true for everything when there is no usable set, for
   /// every object of S_last OR S_next, and for one whose `world_bounds` may reach into the part of the view
-  /// frustum that neither set's field covered (nobody has tested it there). View-frustum culling is the
-  /// caller's.
+  /// frustum that neither set's field covered (nobody has tested it there). So it does for an object that
+  /// moved, where no set in use looked for it, and for all that it may have hidden where it was. False
+  /// without exception for one that is hidden by hide_objects. View-frustum culling is the caller's.
   [[nodiscard]] bool may_be_visible(ObjectId id, const Aabb& world_bounds) const;
 
   Fallback fallback = Fallback::no_set;
@@ -58,6 +60,7 @@ class FrameDecision {
   bool field_covered = false;       ///< the whole view frustum was tested; world_bounds is then not looked at
   std::vector<Frustum> tested;      ///< the widened fields of S_last and S_next, world frame; for display
   std::vector<TestedField> fields;  ///< without field_covered: what may_be_visible decides by
+  MovedInFrame moved;               ///< objects that moved, came or went
   std::size_t eye_count = 1;
   std::optional<double> last_age_s;   ///< now - time of S_last, when used
   std::optional<double> next_lead_s;  ///< time of S_next - now, when used
@@ -83,12 +86,24 @@ class CullingCore {
   /// InputError for a rig that the constructor would refuse; nothing changed then.
   void set_rig(std::vector<RigEye> rig);
 
-  /// Objects' new placements. Each goes out with every request until a set arrives that answers one, and
-  /// again to a daemon that comes back. A placement that differs from the object's last one makes all sets
-  /// asked for before it useless, for they also leave out what the object hid where it was: everything in the
-  /// frustum is drawn until a newer one arrives, so always while something moves in every frame. Throws
-  /// InputError for a placement that is not finite; nothing changed then.
-  void move_objects(std::span<const ObjectMove> moves);
+  /// Objects that may move, as the scene file has them: call it once, before the first request. An object
+  /// that was never declared is told as well, but when it first moves nobody knows what it hid, so everything
+  /// in the frustum is drawn until a set knows it. Throws InputError for what is not finite; nothing changed
+  /// then.
+  void declare_objects(std::span<const MovedObject> objects);
+
+  /// Objects' placements at `now_s`, for those that changed (any others do no harm), before decide of that
+  /// frame. Objects may move in every frame: while one does, requests carry it as a box where it will be when
+  /// the answer is used, and it hides nothing; when it has rested for a few answers it becomes an occluder
+  /// where it is. What the sets at hand do not know is drawn, see MovingObjects: no frame falls back and
+  /// none is wrong for it. Throws InputError for what is not finite; nothing changed then.
+  void move_objects(double now_s, std::span<const MovedObject> objects);
+
+  /// Objects that are not there from now on: not drawn, whatever the sets say, and hiding nothing.
+  void hide_objects(std::span<const ObjectId> ids);
+  /// Objects that are there again, where they were last placed: drawn until a set knows them. At first all
+  /// objects are there.
+  void show_objects(std::span<const ObjectId> ids);
 
   /// The view expected at now + horizon. session_id and acked_set_seq are the link's to fill.
   /// With a horizon of zero and now at the newest pose's time it is that very pose, unwidened. Otherwise
@@ -97,7 +112,7 @@ class CullingCore {
   [[nodiscard]] ViewRequest make_request(double now_s, ImageSize main_size);
 
   /// Files an answer under the time it is for. `request` is the one it answers; answers to requests from
-  /// before the last jump, move or new rig are dropped. The round trip (received - issued) moves the horizon.
+  /// before the last jump or new rig are dropped. The round trip (received - issued) moves the horizon.
   void accept(const ViewRequest& request, double issued_s, const VisibleSet& set, double received_s);
 
   /// The daemon or its session is gone: forget all sets. All moved objects will be told anew.
@@ -112,13 +127,6 @@ class CullingCore {
   [[nodiscard]] const std::vector<RigEye>& rig() const noexcept { return rig_; }
 
  private:
-  /// A moved object: where it is, and the first request that said so (0: none yet).
-  struct Placement {
-    glm::dmat4x3 world_from_object{1.0};
-    std::uint64_t first_request_seq = 0;
-    bool acknowledged = false;
-  };
-
   [[nodiscard]] double guard_rad(const PredictedPose& predicted) const noexcept;
   [[nodiscard]] bool usable(const FiledSet& filed, double now_s, std::span<const Eye> eyes) const;
   /// No set at hand or on its way serves any longer.
@@ -130,7 +138,10 @@ class CullingCore {
   MotionPredictor predictor_;
   HorizonEstimator horizon_;
   VisibleSetTimeline timeline_;
-  std::map<ObjectId, Placement> placements_;
+  MovingObjects moving_;
+  SmoothedValue use_lead_;  ///< by how much answers come before the time they are for
+  double last_frame_s_ = -std::numeric_limits<double>::infinity();  ///< the frame before the newest pose's
+  double frame_s_ = -std::numeric_limits<double>::infinity();       ///< the newest pose's
   std::uint64_t next_request_seq_ = 1;
   std::uint64_t first_valid_request_seq_ = 1;
   bool reset_pending_ = true;

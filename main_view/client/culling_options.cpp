@@ -39,4 +39,21 @@ void CullingOptions::validate() const {
   require_range("max_position_offset_m", max_position_offset_m, 0.0, 1e9);
 }
 
+CullingOptions culling_options_of_preset(std::string_view name) {
+  CullingOptions options;
+  if (name == "default") return options;
+  if (name == "avango") {
+    // Each named here, so that a better default changes nothing of it.
+    options.predictor = PredictorKind::fixed;
+    options.predictor_order = 2;
+    options.predictor_window = 20;
+    options.min_guard_rad = 0.0;
+    options.max_guard_rad = 0.0;
+    options.unite_all_later_sets = false;
+    options.draw_untested = false;
+    return options;
+  }
+  throw InputError("--preset must be avango or default, not '" + std::string(name) + "'");
+}
+
 }  // namespace sightline

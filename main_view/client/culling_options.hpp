@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string_view>
+
 namespace sightline {
 
 /// How the camera is predicted (see MotionPredictor).
@@ -15,9 +17,8 @@ struct CullingOptions {
   void validate() const;
 
   // Motion prediction. The two numbers are for the fixed one: order n over the last p poses (the paper's 2
-  // and 20), which is the default: the adaptive one is nearer to the truth on recorded heads, but its wider
-  // announced rotation widens the guard and so coarsens the control view.
-  PredictorKind predictor = PredictorKind::fixed;
+  // and 20). The adaptive one is nearer to the truth and announces narrower regions, so it is the default.
+  PredictorKind predictor = PredictorKind::adaptive;
   int predictor_order = 2;    ///< 0 to k_max_predictor_order
   int predictor_window = 20;  ///< poses, 1 to k_max_predictor_window
 
@@ -37,10 +38,22 @@ struct CullingOptions {
   double min_guard_rad = 0.175;  ///< 10 degrees
   double max_guard_rad = 0.524;  ///< 30 degrees; a wider field leaves fewer pixels for what is in view
 
+  // What a frame is drawn from. Off is the paper's way.
+  bool unite_all_later_sets = true;  ///< every set for a time after now, rather than the nearest alone
+  bool draw_untested =
+      true;  ///< also what may reach into a part of the view that no set in use has looked at
+
   // When a set says too little about now.
   double max_staleness_s = 0.3;        ///< oldest S_last
   double max_position_offset_m = 0.5;  ///< eye now against eye of the request, beyond what the speed explains
 };
+
+/// The client's part of a named preset; `control_view --preset` has the daemon's. "default", or "avango" for
+/// the paper to the letter: order 2 over 20 poses, the field that was predicted and no wider, and of the
+/// answers the nearest before now OR the nearest after (Klimenko, Nikitina, Nikitin, "Parallel Visibility
+/// Test and Occlusion Culling in Avango Virtual Environment Framework", 2003). What keeps a lost daemon from
+/// costing the picture (jumps, staleness) stays as it is. Throws InputError for another name.
+[[nodiscard]] CullingOptions culling_options_of_preset(std::string_view name);
 
 /// Beyond a cubic an extrapolation follows the noise; each order is also one more instance of the solver to
 /// compile.

@@ -219,6 +219,8 @@ void CullingSession::Impl::on(VisibleSetFrame message, double) {
   auto asked = in_flight.take(message.request_seq);
   if (!asked) return;
   message.bitmap.clear();
+  message.extents_of.clear();
+  message.extents.clear();
   answers.push_back({std::move(asked->request), asked->issued_s, std::move(*set), std::move(message)});
 }
 

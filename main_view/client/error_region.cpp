@@ -28,8 +28,8 @@ constexpr double k_first_way_share = 0.05;
 constexpr double k_most_of_worst = 1.5;
 constexpr double k_most_of_worst_at_first = 100.0;
 
-constexpr double k_factor_step = 0.12;
-constexpr double k_overlap_power = -0.25;
+constexpr double k_factor_step = 0.2;
+constexpr double k_overlap_power = -0.5;
 // A long calm or a long storm must not carry the factor to where it takes minutes to return from.
 constexpr double k_least_log_factor = -0.7;
 constexpr double k_most_log_factor = 3.0;

@@ -33,7 +33,7 @@ struct ErrorMemory {
 /// so far ahead, in a short session, the share of misses is larger.
 class ErrorRegion {
  public:
-  static constexpr double k_missed = 0.0012;
+  static constexpr double k_missed = 0.001;
 
   /// An outcome: the prediction was `error` off, with this doubt and the radius announced for it. `overlap`:
   /// how many outcomes fall into one lead; errors that near one another are alike.

@@ -29,15 +29,17 @@ PoseHistory::PoseHistory(const CullingOptions& options)
 
 PoseHistory::Added PoseHistory::add(const TimedPose& sample) {
   require_usable(sample);
-  if (!samples_.empty() && sample.time_s < samples_.back().time_s) return Added::ignored;
+  if (!samples_.empty() && sample.time_s < newest_as_given_.time_s) return Added::ignored;
 
   const auto velocity_to = [&](const TimedPose& from) {
     return (sample.pose.position_m - from.pose.position_m) / (sample.time_s - from.time_s);
   };
-  const bool later = !samples_.empty() && sample.time_s > samples_.back().time_s;
+  const bool replaces = !samples_.empty() && sample.time_s - samples_.back().time_s < k_least_step_s;
+  const bool later = !samples_.empty() && !replaces;
   const glm::dvec3 velocity = later ? velocity_to(samples_.back()) : last_velocity_m_per_s_;
 
   TimedPose held = sample;
+  if (replaces) held.time_s = samples_.back().time_s;
   held.pose.world_from_camera = glm::normalize(sample.pose.world_from_camera);
   Added result = Added::continued;
   if (samples_.empty()) {
@@ -48,7 +50,7 @@ PoseHistory::Added PoseHistory::add(const TimedPose& sample) {
   } else if (held.time_s - samples_.back().time_s > options_.pose_gap_s) {
     result = Added::restarted;
     samples_.clear();
-  } else if (held.time_s == samples_.back().time_s) {
+  } else if (replaces) {
     samples_.pop_back();
   }
 

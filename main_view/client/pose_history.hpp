@@ -22,10 +22,13 @@ class PoseHistory {
     ignored     ///< its time lies before the newest pose's; nothing changed
   };
 
-  /// A pose at the newest pose's own time replaces that pose. Quaternions are normalised.
+  /// A pose less than k_least_step_s after the newest held one takes its place, at its time: over so short a
+  /// step a millimetre of noise would be a speed of metres a second. Quaternions are normalised.
   /// Throws InputError for a pose that is not finite or has no direction (a zero quaternion); nothing changed
   /// then.
   Added add(const TimedPose& sample);
+
+  static constexpr double k_least_step_s = 5e-4;
 
   void clear() noexcept { samples_.clear(); }
   [[nodiscard]] bool empty() const noexcept { return samples_.empty(); }

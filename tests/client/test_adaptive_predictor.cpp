@@ -155,7 +155,7 @@ TEST(AdaptivePredictor, KeepsAStillHeadWithNoiseWhereItIs) {
     EXPECT_LT(errors.position_m, 0.0023 * 1.1) << frames;
     EXPECT_GT(errors_on(samples, frames, fixed_predictor(1, 2), 1200).position_m, errors.position_m);
     EXPECT_GE(errors.coverage, 0.99);
-    EXPECT_LT(errors.region_m, 0.02);
+    EXPECT_LT(errors.region_m, 0.03);  // the most far ahead: it may begin to move
   }
 }
 

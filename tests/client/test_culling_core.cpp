@@ -153,12 +153,24 @@ TEST(CullingCore, WidensTheFieldByTheGuardOnlyWhereItPredicts) {
   EXPECT_EQ(core.make_request(0.1 + 19 / 60.0, k_size).rotation_error_rad, options.max_guard_rad);
 }
 
+/// A box of 2 m about the object's origin.
+MovedObject box_at(std::uint32_t id, const glm::dvec3& position_m) {
+  MovedObject object{ObjectId{id}, glm::dmat4x3(1.0), {glm::vec3(-1.0f), glm::vec3(1.0f)}};
+  object.world_from_object[3] = position_m;
+  return object;
+}
+
+/// A small box about a point.
+Aabb about(const glm::vec3& point) {
+  return {point - 0.1f, point + 0.1f};
+}
+
 TEST(CullingCore, SendsAMoveUntilASetAnswersARequestThatCarriedIt) {
   CullingCore core({}, one_eye());
   core.add_pose({0.0, pose_at(0.0)});
   const ViewRequest before = core.make_request(0.0, k_size);
-  ObjectMove move{ObjectId{7}, glm::dmat4x3(1.0)};
-  core.move_objects({&move, 1});
+  const MovedObject door = box_at(7, {0.0, 1.7, -5.0});
+  core.move_objects(0.0, {&door, 1});
   const ViewRequest carrying = core.make_request(0.0, k_size);
   ASSERT_EQ(carrying.moves.size(), 1u);
   EXPECT_EQ(carrying.moves[0].id, ObjectId{7});
@@ -174,29 +186,98 @@ TEST(CullingCore, SendsAMoveUntilASetAnswersARequestThatCarriedIt) {
   EXPECT_EQ(core.make_request(0.0, k_size).moves.size(), 1u);
 }
 
-TEST(CullingCore, DrawsWhatAMovedObjectMayHaveHidden) {
+TEST(CullingCore, DrawsWhatAMovedObjectMayHaveHiddenAndNothingElse) {
   CullingCore core({}, one_eye());
   core.add_pose({0.0, pose_at(0.0)});
   const auto eyes = eyes_of(pose_at(0.0), core.rig());
-  const ObjectId hidden{8};
-  ObjectMove door{ObjectId{7}, glm::dmat4x3(1.0)};
-  core.move_objects({&door, 1});
+  const ObjectId other{8};
+  const Aabb behind = about({0.0f, 1.7f, -20.0f}), beside = about({9.0f, 1.7f, -20.0f}),
+             before = about({0.0f, 1.7f, -2.0f});
+  MovedObject door = box_at(7, {0.0, 1.7, -5.0});
+  core.declare_objects({&door, 1});
   const ViewRequest closed = core.make_request(0.0, k_size);
+  EXPECT_TRUE(closed.moves.empty());
   const ViewRequest on_its_way = core.make_request(0.0, k_size);
   core.accept(closed, 0.0, set_of({7}), 0.0);
-  EXPECT_FALSE(core.decide(0.0, eyes).may_be_visible(hidden, k_nowhere));
-  core.move_objects({&door, 1});  // where it is already
-  EXPECT_FALSE(core.decide(0.0, eyes).may_be_visible(hidden, k_nowhere));
+  core.move_objects(0.0, {&door, 1});  // where it is already
+  EXPECT_FALSE(core.decide(0.0, eyes).may_be_visible(other, behind));
 
-  door.world_from_object[3][0] = 1.0;
-  core.move_objects({&door, 1});
-  EXPECT_TRUE(core.decide(0.0, eyes).may_be_visible(hidden, k_nowhere));
-  core.accept(on_its_way, 0.0, set_of({7}), 0.0);
-  EXPECT_TRUE(core.decide(0.0, eyes).may_be_visible(hidden, k_nowhere));
-  const ViewRequest open = core.make_request(0.0, k_size);
-  EXPECT_EQ(open.moves, std::vector<ObjectMove>{door});
-  core.accept(open, 0.0, set_of({7}), 0.0);
-  EXPECT_FALSE(core.decide(0.0, eyes).may_be_visible(hidden, k_nowhere));
+  door.world_from_object[3][0] = 0.1;
+  core.move_objects(0.01, {&door, 1});
+  const auto expect_shadow = [&](const FrameDecision& decision) {
+    EXPECT_EQ(decision.fallback, Fallback::none);
+    EXPECT_TRUE(decision.may_be_visible(other, behind));
+    EXPECT_FALSE(decision.may_be_visible(other, beside));
+    EXPECT_FALSE(decision.may_be_visible(other, before));
+    EXPECT_TRUE(decision.may_be_visible(ObjectId{7}, before));
+  };
+  expect_shadow(core.decide(0.01, eyes));
+  core.accept(on_its_way, 0.01, set_of({7}), 0.01);
+  expect_shadow(core.decide(0.01, eyes));
+  core.add_pose({0.01, pose_at(0.0)});
+  const ViewRequest opening = core.make_request(0.01, k_size);
+  EXPECT_TRUE(opening.moves.empty());
+  ASSERT_EQ(opening.boxed.size(), 1u);
+  EXPECT_EQ(opening.boxed[0].id, ObjectId{7});
+  EXPECT_LE(opening.boxed[0].world_bounds.min.x, -0.9);
+  EXPECT_GE(opening.boxed[0].world_bounds.max.x, 1.1);
+  core.accept(opening, 0.01, set_of({7}), 0.01);
+  EXPECT_FALSE(core.decide(0.01, eyes).may_be_visible(other, behind));
+}
+
+TEST(CullingCore, TellsWhereAnObjectCameToRestOnce) {
+  CullingCore core({}, one_eye());
+  MovedObject door = box_at(7, {0.0, 1.7, -5.0});
+  core.declare_objects({&door, 1});
+  std::size_t boxed = 0, moves = 0;
+  for (int i = 0; i < 60; ++i) {
+    const double now_s = i / 60.0;
+    core.add_pose({now_s, pose_at(0.0)});
+    if (i >= 10 && i < 20) door.world_from_object[3][0] += 0.05;
+    core.move_objects(now_s, {&door, 1});
+    const ViewRequest request = core.make_request(now_s, k_size);
+    boxed += request.boxed.size();
+    moves += request.moves.size();
+    EXPECT_FALSE(!request.boxed.empty() && !request.moves.empty());
+    if (!request.moves.empty()) {
+      EXPECT_EQ(request.moves[0].world_from_object, door.world_from_object);
+    }
+    core.accept(request, now_s, set_of({7}), now_s);
+  }
+  EXPECT_GE(boxed, 12u);
+  EXPECT_LE(boxed, 30u);
+  EXPECT_EQ(moves, 1u);
+}
+
+TEST(CullingCore, SaysOnceThatAnObjectIsGoneAndDrawsItNoMore) {
+  CullingCore core({}, one_eye());
+  core.add_pose({0.0, pose_at(0.0)});
+  const auto eyes = eyes_of(pose_at(0.0), core.rig());
+  const MovedObject door = box_at(7, {0.0, 1.7, -5.0});
+  const ObjectId id = door.id, other{8};
+  const Aabb behind = about({0.0f, 1.7f, -20.0f});
+  core.declare_objects({&door, 1});
+  core.hide_objects({&id, 1});
+  EXPECT_FALSE(core.decide(0.0, eyes).may_be_visible(id, behind));  // not even in a fallback
+  core.show_objects({&id, 1});
+  EXPECT_TRUE(core.decide(0.0, eyes).may_be_visible(id, behind));
+  core.accept(core.make_request(0.0, k_size), 0.0, set_of({7}), 0.0);
+
+  core.hide_objects({&id, 1});
+  EXPECT_FALSE(core.decide(0.0, eyes).may_be_visible(id, behind));
+  EXPECT_TRUE(core.decide(0.0, eyes).may_be_visible(other, behind));
+  core.add_pose({0.01, pose_at(0.0)});
+  const ViewRequest without = core.make_request(0.01, k_size);
+  EXPECT_EQ(without.presence, (std::vector<ObjectPresence>{{id, false}}));
+  core.accept(without, 0.01, set_of({7}), 0.01);
+  EXPECT_FALSE(core.decide(0.01, eyes).may_be_visible(id, behind));
+  EXPECT_FALSE(core.decide(0.01, eyes).may_be_visible(other, behind));
+  EXPECT_TRUE(core.make_request(0.01, k_size).presence.empty());
+
+  core.show_objects({&id, 1});
+  EXPECT_TRUE(core.decide(0.01, eyes).may_be_visible(id, behind));
+  EXPECT_FALSE(core.decide(0.01, eyes).may_be_visible(other, behind));
+  EXPECT_EQ(core.make_request(0.01, k_size).presence, (std::vector<ObjectPresence>{{id, true}}));
 }
 
 TEST(CullingCore, KeepsItsNumberingButNoSetWithANewRig) {
@@ -227,8 +308,13 @@ TEST(CullingCore, RefusesWhatIsNotFinite) {
   Pose broken = pose_at(0.0);
   broken.position_m.y = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(core.add_pose({0.0, broken}), InputError);
-  ObjectMove move{ObjectId{7}, glm::dmat4x3(std::numeric_limits<double>::infinity())};
-  EXPECT_THROW(core.move_objects({&move, 1}), InputError);
+  MovedObject object = box_at(7, glm::dvec3(std::numeric_limits<double>::infinity()));
+  EXPECT_THROW(core.move_objects(0.0, {&object, 1}), InputError);
+  EXPECT_THROW(core.declare_objects({&object, 1}), InputError);
+  object = box_at(7, glm::dvec3(0.0));
+  EXPECT_THROW(core.move_objects(std::nan(""), {&object, 1}), InputError);
+  object.object_bounds.max.y = std::nanf("");
+  EXPECT_THROW(core.move_objects(0.0, {&object, 1}), InputError);
   EXPECT_THROW(CullingCore({}, {}), InputError);
   CullingOptions options;
   options.max_guard_rad = 7.0;
