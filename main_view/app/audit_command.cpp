@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <fstream>
 #include <iostream>
+#include <iterator>
 
 #include <nlohmann/json.hpp>
 
@@ -17,6 +19,7 @@
 #include "main_view/app/quality.hpp"
 #include "main_view/app/report.hpp"
 #include "main_view/app/service_connection.hpp"
+#include "main_view/app/truth_cache.hpp"
 #include "main_view/app/virtual_daemon.hpp"
 
 namespace sightline {
@@ -37,18 +40,30 @@ double seconds_since(RealClock::time_point start) {
   return std::chrono::duration<double>(RealClock::now() - start).count();
 }
 
+/// Objects that are in one of two frames' ascending lists alone.
+std::uint32_t changes_between(std::span<const ObjectId> before, std::span<const ObjectId> now) {
+  std::vector<ObjectId> changed;
+  std::set_symmetric_difference(before.begin(), before.end(), now.begin(), now.end(),
+                                std::back_inserter(changed));
+  return static_cast<std::uint32_t>(changed.size());
+}
+
 /// Everything the replay holds; made once, stepped frame by frame.
 class Audit {
  public:
   explicit Audit(const AuditOptions& options)
       : options_(options),
         path_(read_camera_path(options.scene.path)),
+        head_motion_(options.head),
         frame_count_(options.replay.frame_count(path_.duration_s())),
+        lead_frames_(std::llround(options.lead_in_s * options.replay.rate_hz)),
         scene_(load_scene(options.scene.scene, {.shading = false})),
         connection_(options.scene.scene, scene_, options.service.on_virtual_clock()),
         context_(gl::make_offscreen_context(options.scene.context)),
         gpu_scene_(scene_, false),
         judge_(scene_, gpu_scene_, options.scene.size),
+        known_truth_(options.truth,
+                     {scene_.digest, scene_.object_count(), options.scene.size, context_->description()}),
         layers_(options.scene.size),
         draw_list_(judge_.hierarchy(), scene_.world_origin_m),
         core_(culling_options_of(options.service), rig_of(options.scene, options.replay)),
@@ -59,40 +74,57 @@ class Audit {
 
   [[nodiscard]] std::uint32_t frame_count() const noexcept { return frame_count_; }
 
+  /// What comes before the first frame: seen by the service, judged by nobody.
+  void lead_in() {
+    for (std::int64_t frame = -lead_frames_; frame < 0; ++frame) (void)move_on(frame);
+  }
+
   /// One frame: camera -> request -> (daemon, virtual latency) -> sets -> decision -> draw list -> verdict.
   FrameRecord step(std::uint32_t frame) {
-    const double now_s = frame / options_.replay.rate_hz;
-    const double path_s = options_.replay.start_s + (options_.still ? 0.0 : now_s);
-    const Pose head = path_.at(path_s);
-
-    take_deliveries(now_s);
-    core_.add_pose({now_s, head});
-    daemon_.issue(core_.make_request(now_s, options_.scene.size), now_s);
-    take_deliveries(now_s);  // with no latency the answer to this very frame's request is here already
-
-    const std::vector<Eye> eyes = eyes_of(head, core_.rig());
+    const std::vector<Eye> eyes = move_on(frame);
+    const double path_s = path_seconds(frame);
+    const double now_s = virtual_seconds(frame);
     const FrameDecision decision = core_.decide(now_s, eyes);
     const bool thorough = frame % k_thorough_every == 0;
-    const FrameTruth& truth = judge_.look(
-        eyes, thorough ? FrameJudge::Thoroughness::everything : FrameJudge::Thoroughness::in_frustum);
+    const FrameTruth& truth = find_truth(eyes, thorough);
     const std::vector<ObjectId>& drawn = draw_list_.visible(eyes, decision);
     if (thorough) measure_layers(eyes, truth.in_frustum, drawn);
-    return {path_s, judge_.judge(eyes, drawn), decision.fallback != Fallback::none, decision.last_age_s,
-            decision.next_lead_s};
+    FrameRecord record{path_s, judge_.judge(eyes, drawn), decision.fallback != Fallback::none,
+                       decision.last_age_s, decision.next_lead_s};
+    if (frame > 0) {
+      record.drawn_changes = changes_between(drawn_before_, drawn);
+      record.true_changes = changes_between(visible_before_, truth.visible);
+    }
+    drawn_before_ = drawn;
+    visible_before_ = truth.visible;
+    return record;
   }
+
+  void save_truth() { known_truth_.save(); }
 
   [[nodiscard]] nlohmann::ordered_json report(const std::vector<FrameRecord>& frames, double wall_s) {
     nlohmann::ordered_json report = report_header(context_->description());
     report["settings"] = settings_of(options_.scene, options_.replay, culling_options_of(options_.service),
                                      options_.service, connection_.session().welcome());
     report["settings"]["latency_ms"] = options_.latency_ms;
+    report["settings"]["lead_in_s"] = options_.lead_in_s;
     report["settings"]["still"] = options_.still;
+    report["settings"]["rotations"] = options_.head.rotations.filename().string();
+    report["settings"]["turn_deg_per_s"] = options_.head.turn_deg_per_s;
+    if (std::isinf(options_.head.turn_deg_per_s))
+      report["settings"]["turn_deg_per_s"] = "inf";  // JSON has none
     report["quality"] = quality_of(frames, scene_.object_count(), scene_.triangle_count(),
                                    layers_frustum_max_, layers_drawn_max_);
     // All that differs from run to run.
     report["timing"] = {{"wall_s", wall_s},
                         {"answer_ms_mean", 1000.0 * mean_of(answer_s_)},
                         {"answer_ms_p99", 1000.0 * quantile_of(answer_s_, 0.99)},
+                        // The daemon's own stages: cull, draw, count and filter.
+                        {"control_ms_mean", 1000.0 * mean_of(control_s_)},
+                        {"control_ms_p50", 1000.0 * quantile_of(control_s_, 0.5)},
+                        {"control_ms_p99", 1000.0 * quantile_of(control_s_, 0.99)},
+                        {"request_bytes_mean", mean_of(request_bytes_)},
+                        {"answer_bytes_mean", mean_of(answer_bytes_)},
                         // From the request to the usable set, less the daemon's own work.
                         {"link_overhead_ms_p50", 1000.0 * quantile_of(link_overhead_s_, 0.5)},
                         {"link_overhead_ms_p99", 1000.0 * quantile_of(link_overhead_s_, 0.99)}};
@@ -100,11 +132,49 @@ class Audit {
   }
 
  private:
+  [[nodiscard]] double virtual_seconds(std::int64_t frame) const {
+    return static_cast<double>(frame + lead_frames_) / options_.replay.rate_hz;
+  }
+  [[nodiscard]] double path_seconds(std::int64_t frame) const {
+    if (options_.still) return options_.replay.start_s;
+    // The very same moments, to the bit, wherever a run starts: known truth is found again by them.
+    const double first = options_.replay.start_s * options_.replay.rate_hz;
+    return std::max((first + static_cast<double>(frame)) / options_.replay.rate_hz, 0.0);
+  }
+
+  /// Moves the camera to `frame`, negative in the lead-in, and asks the service; gives the eyes of that
+  /// moment.
+  std::vector<Eye> move_on(std::int64_t frame) {
+    const double now_s = virtual_seconds(frame);
+    const double run_s = std::max(static_cast<double>(frame), 0.0) / options_.replay.rate_hz;
+    const Pose head = head_motion_.applied_to(path_.at(path_seconds(frame)), run_s);
+    take_deliveries(now_s);
+    core_.add_pose({now_s, head});
+    daemon_.issue(core_.make_request(now_s, options_.scene.size), now_s);
+    take_deliveries(now_s);  // with no latency the answer to this very frame's request is here already
+    return eyes_of(head, core_.rig());
+  }
+
+  /// Every frame's truth is drawn once; a thorough one again, which puts what was known to the test.
+  const FrameTruth& find_truth(std::span<const Eye> eyes, bool thorough) {
+    const std::vector<ObjectId>* known = known_truth_.find(eyes);
+    if (known != nullptr && !thorough) return judge_.recall(eyes, *known);
+    const FrameTruth& truth = judge_.look(
+        eyes, thorough ? FrameJudge::Thoroughness::everything : FrameJudge::Thoroughness::in_frustum);
+    if (known != nullptr && *known != truth.visible) {
+      throw InputError("--truth: " + options_.truth.string() + " does not hold what is drawn now; remove it");
+    }
+    known_truth_.add(eyes, truth.visible);
+    return truth;
+  }
+
   /// Asks again when the session was lost on the way: a daemon that --connect found may have closed it while
   /// a slow frame was judged.
   Answer ask(const ViewRequest& request) {
     CullingSession& session = connection_.session();
     const auto start = RealClock::now();
+    const std::uint64_t sent_before = session.bytes_sent();
+    const std::uint64_t received_before = session.bytes_received();
     std::optional<Answer> answer;
     while (!answer && seconds_since(start) < k_answer_timeout_s) {
       if (session.wait_until_open(k_answer_timeout_s) != SessionState::open) break;
@@ -120,7 +190,10 @@ class Audit {
     }
     const StageTimes& t = answer->frame.times;
     answer_s_.push_back(seconds_since(start));
-    link_overhead_s_.push_back(answer_s_.back() - t.queue_s - t.cull_s - t.draw_s - t.count_s - t.filter_s);
+    control_s_.push_back(t.cull_s + t.draw_s + t.count_s + t.filter_s);
+    link_overhead_s_.push_back(answer_s_.back() - t.queue_s - control_s_.back());
+    request_bytes_.push_back(static_cast<double>(session.bytes_sent() - sent_before));
+    answer_bytes_.push_back(static_cast<double>(session.bytes_received() - received_before));
     return *std::move(answer);
   }
 
@@ -140,17 +213,21 @@ class Audit {
 
   AuditOptions options_;
   CameraPath path_;
+  HeadMotion head_motion_;
   std::uint32_t frame_count_;
+  std::int64_t lead_frames_;
   Scene scene_;
   ServiceConnection connection_;
   std::unique_ptr<gl::Context> context_;
   gl::GpuScene gpu_scene_;
   FrameJudge judge_;
+  TruthCache known_truth_;
   DepthComplexity layers_;
   DrawListBuilder draw_list_;
   CullingCore core_;
   VirtualDaemon daemon_;
-  std::vector<double> answer_s_, link_overhead_s_;
+  std::vector<ObjectId> drawn_before_, visible_before_;
+  std::vector<double> answer_s_, control_s_, link_overhead_s_, request_bytes_, answer_bytes_;
   std::uint32_t layers_frustum_max_ = 0, layers_drawn_max_ = 0;
 };
 
@@ -183,14 +260,17 @@ void write_frames_csv(const std::filesystem::path& file, const std::vector<Frame
 ExitCode run_audit(const AuditOptions& options) {
   require_writable(options.json, "--json");
   if (!options.frames_csv.empty()) require_writable(options.frames_csv, "--frames-csv");
+  if (!options.truth.empty()) require_writable(options.truth, "--truth");
   const auto start = RealClock::now();
   Audit audit(options);
   std::vector<FrameRecord> frames;
+  audit.lead_in();
   Progress progress("audit", audit.frame_count());
   for (std::uint32_t frame = 0; frame < audit.frame_count(); ++frame) {
     frames.push_back(audit.step(frame));
     progress.advance(frame + 1);
   }
+  audit.save_truth();
   const nlohmann::ordered_json report = audit.report(frames, seconds_since(start));
   write_report(options.json, report);
   if (!options.frames_csv.empty()) write_frames_csv(options.frames_csv, frames);

@@ -81,16 +81,28 @@ void add_audit(CLI::App& app, CommandLine& line) {
                      "Exit with 1 when the mean share of wrong pixels is above this");
   command.add_option("--frames-csv", options.frames_csv,
                      "One line a frame: wrong pixels, missed, drawn, visible");
+  command.add_option("--lead-in", options.lead_in_s,
+                     "Seconds of the path before --start that the service sees and nobody judges [0]");
   command.add_flag("--still", options.still, "Keep the camera where it is at --start");
+  command.add_option("--rotations", options.head.rotations,
+                     "Recorded head whose rotation is laid over the path's, CSV like --path");
+  command.add_option(
+      "--turn", options.head.turn_deg_per_s,
+      "Half turns of the head at this speed, degrees a second, or inf for turns in no time [0]");
+  command.add_option("--truth", options.truth,
+                     "File that keeps each view's exact visible set for later audits of the same views");
   command.add_option("--json", options.json, "Report file")->required();
   command.callback([&line] {
     line.run = [&options = line.audit] {
       options.scene.validate();
       options.replay.validate();
       options.service.validate(true);
+      options.head.validate();
       if (!(options.latency_ms >= 0.0 && options.latency_ms <= 10'000.0)) {
         throw InputError("--latency: give 0 to 10000 ms");
       }
+      if (!(options.lead_in_s >= 0.0 && options.lead_in_s <= 60.0))
+        throw InputError("--lead-in: give 0 to 60 s");
       return static_cast<int>(run_audit(options));
     };
   });

@@ -44,7 +44,7 @@ const std::vector<ObjectId>& DrawListBuilder::in_frustum(std::span<const Eye> ey
 const std::vector<ObjectId>& DrawListBuilder::visible(std::span<const Eye> eyes,
                                                       const FrameDecision& decision) {
   in_frustum(eyes);
-  if (decision.fallback != Fallback::none) return in_frustum_;
+  if (decision.fallback != Fallback::none && decision.moved.absent.empty()) return in_frustum_;
   visible_.clear();
   for (const ObjectId id : in_frustum_) {
     const Aabb world_bounds = moved_outwards(hierarchy_.bounds_of(id), world_origin_m_);

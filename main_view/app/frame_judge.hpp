@@ -47,17 +47,31 @@ class FrameJudge {
   /// Draws the true image for each eye and keeps it for judge. Valid until the next look.
   const FrameTruth& look(std::span<const Eye> eyes, Thoroughness thoroughness = Thoroughness::in_frustum);
 
-  /// Verdict on `drawn` (ascending), for the eyes of the last look.
+  /// Takes `visible` (ascending), what an earlier look at the same eyes found, for the truth and draws
+  /// nothing. Valid until the next look.
+  const FrameTruth& recall(std::span<const Eye> eyes, const std::vector<ObjectId>& visible);
+
+  /// Verdict on `drawn` (ascending), for the eyes of the last look or recall.
+  ///
+  /// Rests on this: an image of some of the objects that holds every winner of a pixel has the same winners,
+  /// for the others lose to them as before. So where nothing visible was left out no image is compared, and a
+  /// recalled truth is drawn from the visible objects alone. After a look with Thoroughness::everything the
+  /// images are always drawn and compared, which puts the argument to the test.
   [[nodiscard]] FrameVerdict judge(std::span<const Eye> eyes, std::span<const ObjectId> drawn);
 
   [[nodiscard]] const ObjectHierarchy& hierarchy() const noexcept { return hierarchy_; }
 
  private:
+  void collect_in_frustum(std::span<const Eye> eyes);
+  void draw_recalled(std::span<const Eye> eyes);
+  [[nodiscard]] std::uint64_t wrong_pixels(std::span<const Eye> eyes, std::span<const ObjectId> drawn,
+                                           std::span<const ObjectId> missed);
   void look_at(const Eye& eye, Thoroughness thoroughness, std::vector<ItemCode>& codes);
 
   gl::GpuScene& gpu_scene_;
   ObjectHierarchy hierarchy_;
   gl::ItemBuffer whole_, culled_;
+  std::size_t pixels_of_an_eye_;
   std::vector<bool> blended_;
   std::vector<std::uint32_t> triangles_;
   std::uint64_t triangles_all_ = 0;
@@ -67,6 +81,7 @@ class FrameJudge {
   std::vector<ItemCode> drawn_codes_;
   std::vector<ObjectId> all_ids_, eye_ids_, eye_blended_;
   Thoroughness thoroughness_ = Thoroughness::in_frustum;
+  bool recalled_ = false;
   std::vector<std::uint32_t> blended_pixels_;
   std::vector<std::uint8_t> missed_mask_;
 };

@@ -57,8 +57,10 @@ void add_service_options(CLI::App& command, ServiceOptions& options) {
           "Control view's image, WxH pixels")
       ->group(group);
   add("--control-rate", options.control_rate_hz, "Most requests a second that the daemon answers");
-  add("--preset", options.preset, "Named settings of the daemon: default or avango");
-  add("--predictor", options.predictor, "One polynomial, or a blend that adapts to the motion [fixed]")
+  add("--preset", options.preset,
+      "Named settings of both sides: default, or avango for the paper to the letter")
+      ->check(CLI::IsMember({"default", "avango"}));
+  add("--predictor", options.predictor, "One polynomial, or a blend that adapts to the motion [the preset's]")
       ->check(CLI::IsMember({"fixed", "adaptive"}));
   add("--predictor-order", options.predictor_order, "Order of the polynomial that predicts the camera [2]");
   add("--predictor-window", options.predictor_window, "Poses that the polynomial is fitted to [20]");

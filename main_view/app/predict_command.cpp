@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdio>
 #include <fstream>
-#include <iterator>
 #include <map>
 #include <string>
 #include <utility>
@@ -56,23 +55,15 @@ using Segment = std::vector<TimedPose>;
 /// The stretches between pauses, resampled to a steady rate.
 std::vector<Segment> steady_segments(const CameraPath& trace, double rate_hz) {
   std::vector<Segment> segments;
-  auto begin = trace.samples.begin();
-  while (begin != trace.samples.end()) {
-    const auto pause = std::adjacent_find(
-        begin, trace.samples.end(),
-        [](const TimedPose& a, const TimedPose& b) { return b.time_s - a.time_s > k_longest_gap_s; });
-    const auto end = pause == trace.samples.end() ? pause : std::next(pause);
-    const CameraPath stretch{{begin, end}};
-    const double start_s = begin->time_s;
-    const double last_s = std::prev(end)->time_s;
+  for (const CameraPath& stretch : pieces_between_gaps(trace, k_longest_gap_s)) {
+    const double start_s = stretch.samples.front().time_s;
     Segment segment;
     for (std::size_t i = 0;; ++i) {
       const double time_s = start_s + static_cast<double>(i) / rate_hz;
-      if (time_s > last_s) break;
+      if (time_s > stretch.samples.back().time_s) break;
       segment.push_back({time_s, stretch.at(time_s)});
     }
     segments.push_back(std::move(segment));
-    begin = end;
   }
   return segments;
 }

@@ -12,6 +12,7 @@ nlohmann::ordered_json quality_of(const std::vector<FrameRecord>& frames, std::u
                                   std::uint64_t triangle_count, std::uint32_t depth_frustum_max,
                                   std::uint32_t depth_drawn_max) {
   std::vector<double> wrong, missed, conservativity, all, frustum, drawn, oracle;
+  std::vector<double> drawn_changes, true_changes;
   std::uint64_t drawn_total = 0, visible_total = 0, fallbacks = 0, wrong_frames = 0;
   double last_fallback_s = -1.0;
   for (const FrameRecord& frame : frames) {
@@ -28,6 +29,10 @@ nlohmann::ordered_json quality_of(const std::vector<FrameRecord>& frames, std::u
     frustum.push_back(static_cast<double>(v.triangles_frustum));
     drawn.push_back(static_cast<double>(v.triangles_drawn));
     oracle.push_back(static_cast<double>(v.triangles_oracle));
+    if (&frame != &frames.front()) {
+      drawn_changes.push_back(frame.drawn_changes);
+      true_changes.push_back(frame.true_changes);
+    }
     if (frame.fallback) {
       ++fallbacks;
       last_fallback_s = frame.time_s - frames.front().time_s;
@@ -48,6 +53,8 @@ nlohmann::ordered_json quality_of(const std::vector<FrameRecord>& frames, std::u
   quality["conservativity_total"] = visible_total > 0 ? double(drawn_total) / double(visible_total) : 0.0;
   quality["fallback_frames"] = fallbacks;
   quality["fallback_last_s"] = last_fallback_s;  // seconds into the run; -1 when there was none
+  quality["state_changes_drawn_mean"] = mean_of(drawn_changes);
+  quality["state_changes_true_mean"] = mean_of(true_changes);
   quality["triangles_all"] = mean_of(all);
   quality["triangles_frustum"] = mean_of(frustum);
   quality["triangles_drawn"] = mean_of(drawn);

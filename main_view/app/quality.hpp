@@ -15,6 +15,8 @@ struct FrameRecord {
   FrameVerdict verdict;
   bool fallback = false;                          ///< drawn with view-frustum culling alone
   std::optional<double> last_age_s, next_lead_s;  ///< of the sets it was drawn with
+  std::uint32_t drawn_changes = 0;  ///< objects drawn here or in the frame before, but not in both
+  std::uint32_t true_changes = 0;   ///< the same of the truly visible ones; both 0 in the first frame
 };
 
 /// The report's `quality`: fields as docs/architecture.md defines them.

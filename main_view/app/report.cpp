@@ -63,6 +63,7 @@ nlohmann::ordered_json settings_of(const SceneOptions& scene, const ReplayOption
   settings["rate_hz"] = replay.rate_hz;
   settings["start_s"] = replay.start_s;
   settings["stereo"] = replay.stereo;
+  settings["client_preset"] = service.preset.value_or("default");
   const bool adaptive = culling.predictor == PredictorKind::adaptive;
   settings["predictor"] = adaptive ? "adaptive" : "fixed";
   if (!adaptive) {
@@ -72,6 +73,8 @@ nlohmann::ordered_json settings_of(const SceneOptions& scene, const ReplayOption
   settings["min_guard_deg"] = culling.min_guard_rad * 180.0 / 3.14159265358979323846;
   settings["max_guard_deg"] = culling.max_guard_rad * 180.0 / 3.14159265358979323846;
   settings["max_staleness_s"] = culling.max_staleness_s;
+  settings["unite_all_later_sets"] = culling.unite_all_later_sets;
+  settings["draw_untested"] = culling.draw_untested;
   if (daemon) {
     settings["engine"] = daemon->engine;
     settings["control_size"] = text(daemon->control_size);

@@ -45,7 +45,7 @@ void ServiceConnection::require_open(double timeout_s) {
 }
 
 CullingOptions culling_options_of(const ServiceOptions& options) {
-  CullingOptions culling;
+  CullingOptions culling = culling_options_of_preset(options.preset.value_or("default"));
   if (options.predictor) {
     culling.predictor = *options.predictor == "adaptive" ? PredictorKind::adaptive : PredictorKind::fixed;
   }

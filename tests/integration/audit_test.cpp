@@ -72,6 +72,37 @@ TEST(TwoProcesses, ReportTheSameTwiceTimesAside) {
   EXPECT_EQ(first.dump(), second.dump());
 }
 
+TEST(TwoProcesses, ReportTheSameWithATruthThatIsKnown) {
+  const Scenario city = small_city();
+  const std::vector<std::string> late = {
+      "--latency",      "200",     "--control-rate", "10",
+      "--size",         "160x120", "--preset",       "avango",
+      "--control-size", "80x60",   "--frames",       "160",
+      "--turn",         "300",     "--truth",        city.file("views.truth")};
+  nlohmann::json first = city.audit(late, "report.json");
+  nlohmann::json second = city.audit(late, "report.json");
+  ASSERT_TRUE(first.is_object() && second.is_object());
+  EXPECT_GT(first["quality"]["frames_with_wrong_pixels"], 0);  // the images had to be drawn
+  EXPECT_EQ(first["quality"].dump(), second["quality"].dump());
+}
+
+TEST(TwoProcesses, SayThePresetOfBothSides) {
+  for (const char* preset : {"default", "avango"}) {
+    const auto report = small_city().audit({"--size", "160x120", "--frames", "2", "--preset", preset});
+    ASSERT_TRUE(report.is_object());
+    EXPECT_EQ(report["settings"]["preset"], preset);
+    EXPECT_EQ(report["settings"]["client_preset"], preset);
+  }
+}
+
+TEST(TwoProcesses, TurnTheHeadOfACameraThatStandsStill) {
+  const auto report = small_city().audit(
+      {"--still", "--turn", "inf", "--size", "160x120", "--latency", "0", "--rate", "10", "--frames", "45"});
+  ASSERT_TRUE(report.is_object());
+  EXPECT_GT(report["quality"]["state_changes_true_mean"], 0.0);
+  EXPECT_EQ(report["settings"]["turn_deg_per_s"], "inf");
+}
+
 TEST(TwoProcesses, StayNearlyRightUnderLatency) {
   const auto report = small_city().audit({"--latency", "50", "--control-rate", "30", "--size", "1024x768",
                                           "--control-size", "512x384", "--frames", "120"});

@@ -100,5 +100,31 @@ TEST_F(Judged, DrawsEverythingToTheSamePicture) {
   EXPECT_FALSE(std::binary_search(quick.in_frustum.begin(), quick.in_frustum.end(), behind_camera_));
 }
 
+TEST_F(Judged, SaysTheSameOfATruthThatItRecalls) {
+  const std::vector<Eye> eyes = {eye(0.0), eye(0.5)};
+  const std::vector<std::vector<ObjectId>> lists = {{},
+                                                    {back_},
+                                                    {back_, front_},
+                                                    {back_, glass_},
+                                                    {front_, glass_, hidden_},
+                                                    {back_, front_, glass_, hidden_}};
+  for (const std::vector<ObjectId>& drawn : lists) {
+    const std::vector<ObjectId> visible = judge_->look(eyes, FrameJudge::Thoroughness::everything).visible;
+    const FrameVerdict looked = judge_->judge(eyes, drawn);
+    const std::vector<ObjectId> in_frustum = judge_->look(eyes).in_frustum;
+    const FrameVerdict in_view = judge_->judge(eyes, drawn);
+    EXPECT_EQ(judge_->recall(eyes, visible).in_frustum, in_frustum);
+    const FrameVerdict recalled = judge_->judge(eyes, drawn);
+    for (const FrameVerdict& v : {in_view, recalled}) {
+      EXPECT_EQ(v.wrong_pixels, looked.wrong_pixels) << drawn.size();
+      EXPECT_EQ(v.pixels, looked.pixels);
+      EXPECT_EQ(v.missed_objects, looked.missed_objects);
+      EXPECT_EQ(v.visible_objects, looked.visible_objects);
+      EXPECT_EQ(v.triangles_frustum, looked.triangles_frustum);
+      EXPECT_EQ(v.triangles_oracle, looked.triangles_oracle);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace sightline
