@@ -89,7 +89,8 @@ class Eroder {
     }
     const float radius = radius_.at_far_px + radius_.per_depth_px * -least(negative_nearest);
     if (!(radius > 0.0f)) return 0;
-    return radius < static_cast<float>(k_most_erosion) ? static_cast<int>(radius + 0.5f) : k_most_erosion;
+    return radius < static_cast<float>(k_most_erosion) ? static_cast<int>(__builtin_floorf(radius + 0.5f))
+                                                       : k_most_erosion;
   }
 
   Target& target_;

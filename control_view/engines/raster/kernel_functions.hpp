@@ -6,10 +6,16 @@
 
 namespace sightline::raster::SIGHTLINE_LANES {
 
-const KernelFunctions k_functions{
-    [](const RegionJob& job, RegionMemory& memory) { return RegionDrawer(job, memory).draw(); },
-    copy_depth,
-    [](const ProbeJob& job, RegionMemory& memory) { return RegionProber(job, memory).probe(); },
-};
+inline RegionResult draw_region(const RegionJob& job, RegionMemory& memory) {
+  return RegionDrawer(job, memory).draw();
+}
+
+inline RegionResult probe_region(const ProbeJob& job, RegionMemory& memory) {
+  return RegionProber(job, memory).probe();
+}
+
+constexpr KernelFunctions functions_of_these_lanes() {
+  return {draw_region, copy_depth, probe_region};
+}
 
 }  // namespace sightline::raster::SIGHTLINE_LANES
