@@ -87,6 +87,7 @@ Errors errors_on(const std::vector<TimedPose>& samples, std::size_t frames,
 
 std::vector<TimedPose> sampled(const std::function<Pose(double)>& motion, double seconds) {
   std::vector<TimedPose> samples;
+  samples.reserve(static_cast<std::size_t>(seconds * k_rate_hz) + 1);
   for (int i = 0; i < seconds * k_rate_hz; ++i) samples.push_back({i * k_step_s, motion(i * k_step_s)});
   return samples;
 }

@@ -312,7 +312,8 @@ TEST(ServiceDeltas, DecodeToTheSameSetsAsKeyframes) {
   std::vector<ObjectMove> moves;
   for (std::uint64_t seq = 1; seq <= 60; ++seq) {
     // Now and then a leap; mostly the set grows by a moved object.
-    const double place = static_cast<double>(seq / 10);
+    const std::uint64_t leaps = seq / 10;
+    const auto place = static_cast<double>(leaps);
     ViewRequest request = client.request(seq, place);
     request.moves = {move_of(static_cast<std::uint32_t>(random() % k_object_count), 1.0)};
     moves.push_back(request.moves[0]);

@@ -59,7 +59,8 @@ TEST(AbsentObjects, AreWhatASetOfTheLastChangesHolds) {
   std::set<ObjectId> expected;
   for (int request = 0; request < 300; ++request) {
     std::map<ObjectId, bool> changes;
-    for (std::uint32_t i = random() % 8; i-- > 0;) changes[ObjectId{random() % 40}] = random() % 2 == 0;
+    for (std::uint32_t i = random() % 8; i-- > 0;)
+      changes[ObjectId{static_cast<std::uint32_t>(random() % 40)}] = random() % 2 == 0;
     std::vector<ObjectPresence> presence;
     const auto before = expected;
     for (const auto& [id, present] : changes) {
