@@ -58,7 +58,8 @@ TEST_F(PredictCommand, WritesARowForEachTraceHorizonAndPredictor) {
     EXPECT_NEAR(row["rotation_deg_p95"], 0.0, 1e-5);
     EXPECT_EQ(row["coverage"], 1.0) << row.dump();
     EXPECT_GE(row["region_mm_mean"], row["position_mm_mean"]);
-    // What never turned may begin to: the adaptive predictor allows for it, the others learn from their errors.
+    // What never turned may begin to: the adaptive predictor allows for it, the others learn from their
+    // errors.
     const bool adapts = row["predictor"] == "default" || row["predictor"] == "adaptive";
     EXPECT_NEAR(row["region_deg_mean"], 0.0, adapts ? 2.0 : 1e-4) << row.dump();
   }

@@ -340,8 +340,8 @@ TEST_P(RasterOpenObjects, AreBehindASlitOfAPixel) {
   EXPECT_EQ(slits_that_lose_what_is_behind(GetParam(), 1.05), 0);
 }
 
-// A known shortfall: where two walls cover the samples on both sides, nothing of the slit is in the depth that
-// is eroded. Of 20 places within a pixel 13 lose it; a third of them at least must find it.
+// A known shortfall: where two walls cover the samples on both sides, nothing of the slit is in the depth
+// that is eroded. Of 20 places within a pixel 13 lose it; a third of them at least must find it.
 TEST_P(RasterOpenObjects, AreBehindASlitOfAThirdOfAPixelWhereASampleMeetsIt) {
   EXPECT_LE(slits_that_lose_what_is_behind(GetParam(), 0.33), 13);
 }
