@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include <glm/geometric.hpp>
 
@@ -27,6 +28,18 @@ double pixel_m(const glm::dmat4& clip_from_camera, int row, std::uint32_t pixels
 }
 
 }  // namespace
+
+SceneEdits without_boxed(const SceneEdits& edits, std::span<const BoxedObject> boxed, std::uint64_t version) {
+  constexpr std::uint64_t k_no_session = 0;  // sessions are numbered otherwise
+  SceneEdits left_out = edits;
+  left_out.owner = k_no_session;
+  left_out.version = version;
+  std::vector<ObjectId>& hidden = left_out.hidden;
+  for (const BoxedObject& object : boxed) hidden.push_back(object.id);
+  std::sort(hidden.begin(), hidden.end());
+  hidden.erase(std::unique(hidden.begin(), hidden.end()), hidden.end());
+  return left_out;
+}
 
 Aabb widened_by_a_pixel(const WorldBox& box, const Eye& eye, ImageSize image,
                         const glm::dvec3& world_origin_m) noexcept {

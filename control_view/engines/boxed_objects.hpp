@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 
 #include <glm/vec3.hpp>
@@ -26,6 +27,12 @@ struct FinishedView {
 /// it covers. So a box between the pixels' centres still shows, and a slit narrower than a pixel beside an
 /// occluder's edge hides nothing; one in the middle of an occluder may.
 void report_boxed(std::span<const BoxedObject> boxed, const FinishedView& view, CountAccumulator& sum);
+
+/// A session's edits with the boxed objects hidden: what an engine draws that has no other way to leave them
+/// out. Belongs to no session, so no engine takes what comes next for the same; `version` has to be another
+/// for each query.
+[[nodiscard]] SceneEdits without_boxed(const SceneEdits& edits, std::span<const BoxedObject> boxed,
+                                       std::uint64_t version);
 
 /// The box in the scene frame, rounded outwards, widened by a pixel of `image` at its farthest corner.
 /// Perspective and orthographic projections alike.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/error.hpp"
+#include "control_view/engines/boxed_objects.hpp"
 #include "control_view/engines/histogram.hpp"
 #include "control_view/engines/moved_objects.hpp"
 #include "control_view/engines/raycast_layer.hpp"
@@ -19,8 +20,6 @@ namespace {
 
 constexpr std::uint32_t k_packet_columns = 4;
 constexpr std::uint32_t k_packet_rows = 2;
-/// Owner of edits that no session has sent: sessions are numbered otherwise.
-constexpr std::uint64_t k_no_session = 0;
 /// Rows a worker takes at a time.
 constexpr std::uint32_t k_strip_rows = 8;
 
@@ -99,13 +98,7 @@ class RaycastEngine final : public VisibilityEngine {
   /// Boxed objects are hidden as those are that are not there, until the next apply.
   void leave_out(std::span<const BoxedObject> boxed) {
     if (boxed.empty()) return;
-    SceneEdits left_out = edits_;
-    left_out.owner = k_no_session;
-    left_out.version = ++boxed_version_;
-    for (const BoxedObject& object : boxed) left_out.hidden.push_back(object.id);
-    std::sort(left_out.hidden.begin(), left_out.hidden.end());
-    left_out.hidden.erase(std::unique(left_out.hidden.begin(), left_out.hidden.end()), left_out.hidden.end());
-    place(left_out);
+    place(without_boxed(edits_, boxed, ++boxed_version_));
   }
 
   /// One worker's own: no worker touches another's.

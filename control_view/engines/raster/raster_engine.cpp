@@ -273,21 +273,11 @@ class RasterEngine final : public VisibilityEngine {
 
   /// Makes every object stand where the edits say, but for those that the query looks for by their boxes.
   void place(std::span<const BoxedObject> boxed) {
-    const MovedObjects::Change& change = moved_.turn_to(boxed.empty() ? edits_ : without(boxed));
+    const MovedObjects::Change& change =
+        moved_.turn_to(boxed.empty() ? edits_ : without_boxed(edits_, boxed, ++left_out_version_));
     if (change.ids.empty()) return;
     scene_.set_transforms(change.ids, change.scene_from_object);
     hierarchy_.move(change.ids, change.bounds);
-  }
-
-  [[nodiscard]] const SceneEdits& without(std::span<const BoxedObject> boxed) {
-    left_out_ = edits_;
-    left_out_.owner = 0;  // no session's: what comes next is never taken for the same
-    left_out_.version = ++left_out_version_;
-    for (const BoxedObject& object : boxed) left_out_.hidden.push_back(object.id);
-    std::sort(left_out_.hidden.begin(), left_out_.hidden.end());
-    left_out_.hidden.erase(std::unique(left_out_.hidden.begin(), left_out_.hidden.end()),
-                           left_out_.hidden.end());
-    return left_out_;
   }
 
   void plan(const ViewQuery& query) {
@@ -434,7 +424,7 @@ class RasterEngine final : public VisibilityEngine {
   std::vector<raster::WholeDepth> closeup_depths_;  ///< by worker
   std::vector<Task> tasks_;
   std::uint64_t session_ = 0;
-  SceneEdits edits_, left_out_;
+  SceneEdits edits_;
   std::uint64_t left_out_version_ = 0;
   std::vector<std::vector<raster::BoxedItem>> boxes_;  ///< by eye
 };
