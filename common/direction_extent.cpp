@@ -164,12 +164,10 @@ DirectionExtent seen_from_nearby(const DirectionExtent& extent, double offset_m)
 
 bool holds(const DirectionExtent& outer, const DirectionExtent& inner) noexcept {
   const int to_inner = (inner.azimuth_first - outer.azimuth_first) & 255;
-  return width_of(outer) == 256
-             ? outer.elevation_first <= inner.elevation_first &&
-                   outer.elevation_last >= inner.elevation_last && outer.distance <= inner.distance
-             : to_inner + width_of(inner) <= width_of(outer) &&
-                   outer.elevation_first <= inner.elevation_first &&
-                   outer.elevation_last >= inner.elevation_last && outer.distance <= inner.distance;
+  const bool all_round = width_of(outer) == 256;
+  return (all_round || to_inner + width_of(inner) <= width_of(outer)) &&
+         outer.elevation_first <= inner.elevation_first && outer.elevation_last >= inner.elevation_last &&
+         outer.distance <= inner.distance;
 }
 
 DirectionField::DirectionField(const Frustum& frustum) noexcept {

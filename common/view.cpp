@@ -56,14 +56,19 @@ void widen_depth(glm::dmat4& matrix, double corner_tangent, double angle_rad) {
   matrix[3][2] = -2.0 * wide_far_m * wide_near_m / (wide_far_m - wide_near_m);
 }
 
-/// Of the form that widening knows: axes not mixed, divided by the distance along the view.
-bool is_upright_perspective(const glm::dmat4& m) noexcept {
+}  // namespace
+
+glm::dvec3 position_of(const Eye& eye) noexcept {
+  const glm::dmat4& m = eye.camera_from_world;
+  return -(glm::transpose(glm::dmat3(m)) * glm::dvec3(m[3]));
+}
+
+bool is_upright_perspective(const glm::dmat4& clip_from_camera) noexcept {
+  const glm::dmat4& m = clip_from_camera;
   const bool perspective = m[0][3] == 0.0 && m[1][3] == 0.0 && m[2][3] == -1.0 && m[3][3] == 0.0;
   const bool upright = m[1][0] == 0.0 && m[0][1] == 0.0 && m[3][0] == 0.0 && m[3][1] == 0.0;
   return perspective && upright && m[0][0] > 0.0 && m[1][1] > 0.0;
 }
-
-}  // namespace
 
 std::optional<ImageSize> parse_image_size(std::string_view text) {
   const std::size_t cross = text.find('x');
@@ -110,11 +115,6 @@ double near_reach_m(const glm::dmat4& clip_from_camera) noexcept {
   if (!(near_m > 0.0)) return 0.0;
   const double x = (1.0 + std::abs(m[2][0])) / m[0][0], y = (1.0 + std::abs(m[2][1])) / m[1][1];
   return near_m * std::sqrt(1.0 + x * x + y * y);
-}
-
-double nearest_kept_m(const glm::dmat4& clip_from_camera, double angle_rad) noexcept {
-  // A turned eye's near plane reaches no farther out than its corners, wherever it is turned.
-  return angle_rad > 0.0 ? near_reach_m(clip_from_camera) : 0.0;
 }
 
 void move_near_plane(glm::dmat4& clip_from_camera, double near_m) noexcept {

@@ -35,6 +35,9 @@ struct Eye {
   [[nodiscard]] glm::dmat4 clip_from_world() const noexcept { return clip_from_camera * camera_from_world; }
 };
 
+/// Where an eye is, world frame.
+[[nodiscard]] glm::dvec3 position_of(const Eye& eye) noexcept;
+
 /// A symmetric perspective projection.
 struct Perspective {
   double vertical_fov_rad = 1.0471975511965976;  ///< 60 degrees
@@ -56,15 +59,16 @@ struct Perspective {
 /// corners come closer and its far corners go further along the unturned axis.
 [[nodiscard]] glm::dmat4 widened(const glm::dmat4& clip_from_camera, double angle_rad) noexcept;
 
-/// Metres along the view's axis: nothing beyond is cut away by the near plane of an eye that is turned by up
-/// to `angle_rad` against this one and sees no wider. 0 for a projection that widened() does not know.
-[[nodiscard]] double nearest_kept_m(const glm::dmat4& clip_from_camera, double angle_rad) noexcept;
+/// Whether a projection is a perspective whose axes are not mixed (bottom row 0 0 -1 0, no skew): the form
+/// that what follows knows.
+[[nodiscard]] bool is_upright_perspective(const glm::dmat4& clip_from_camera) noexcept;
 
 /// Moves the near plane of a perspective projection to `near_m`, where that is farther and before the far
 /// plane.
 void move_near_plane(glm::dmat4& clip_from_camera, double near_m) noexcept;
 
-/// Farthest that a point cut away by the near plane can be from the eye, metres: the near plane's corners.
+/// Farthest that a point cut away by the near plane can be from the eye, metres: the near plane's corners. So
+/// it is for an eye turned against this one, too. 0 for a projection that is no upright perspective.
 [[nodiscard]] double near_reach_m(const glm::dmat4& clip_from_camera) noexcept;
 
 /// The two eyes of a head pose: `separation_m` apart along the camera's X axis, parallel.

@@ -21,9 +21,7 @@ namespace {
 
 /// Where the first eye is, world frame.
 glm::dvec3 eye_m_of(const ViewRequest& request) noexcept {
-  if (request.eyes.empty()) return {};
-  const glm::dmat4& m = request.eyes.front().camera_from_world;
-  return -(glm::transpose(glm::dmat3(m)) * glm::dvec3(m[3]));
+  return request.eyes.empty() ? glm::dvec3(0.0) : position_of(request.eyes.front());
 }
 
 // A longer way between two requests is a jump.
@@ -112,7 +110,7 @@ void VisibilityPipeline::count_whole_view(const ViewRequest& request, Visibility
       const glm::dmat4 projection = eye.clip_from_camera;
       eye.clip_from_camera = widened(projection, error_rad);
       // What the client's near plane may cut away hides nothing. The client draws whatever comes that near.
-      if (options_.sample_px) move_near_plane(eye.clip_from_camera, nearest_kept_m(projection, error_rad));
+      if (options_.sample_px) move_near_plane(eye.clip_from_camera, near_reach_m(projection));
     }
   }
   ViewQuery query;

@@ -45,8 +45,7 @@ Aabb widened_by_a_pixel(const WorldBox& box, const Eye& eye, ImageSize image,
                         const glm::dvec3& world_origin_m) noexcept {
   // In the eye's neighbourhood first: far from the origin the product of both matrices has few digits left.
   const glm::dmat4& camera_from_world = eye.camera_from_world;
-  const glm::dvec3 eye_m =
-      -(glm::transpose(glm::dmat3(camera_from_world)) * glm::dvec3(camera_from_world[3]));
+  const glm::dvec3 eye_m = position_of(eye);
   const glm::dmat4 clip_from_eye = eye.clip_from_camera * glm::dmat4(glm::dmat3(camera_from_world));
   const double w = std::max(farthest_w(clip_from_eye, {box.min - eye_m, box.max - eye_m}), 0.0);
   const double pad = std::max(pixel_m(eye.clip_from_camera, 0, image.width, w),

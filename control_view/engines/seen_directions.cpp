@@ -7,15 +7,11 @@
 namespace sightline {
 
 SeenDirections::SeenDirections(const Eye& eye, ImageSize image)
-    : world_from_camera_(glm::transpose(glm::dmat3(eye.camera_from_world))),
+    : perspective_(is_upright_perspective(eye.clip_from_camera)),
+      world_from_camera_(glm::transpose(glm::dmat3(eye.camera_from_world))),
       projection_(eye.clip_from_camera),
       width_(image.width),
-      height_(image.height) {
-  const glm::dmat4& m = projection_;
-  const bool divides_by_depth = m[0][3] == 0.0 && m[1][3] == 0.0 && m[2][3] == -1.0 && m[3][3] == 0.0;
-  const bool upright = m[0][1] == 0.0 && m[1][0] == 0.0 && m[3][0] == 0.0 && m[3][1] == 0.0;
-  perspective_ = divides_by_depth && upright && m[0][0] > 0.0 && m[1][1] > 0.0;
-}
+      height_(image.height) {}
 
 DirectionExtent SeenDirections::of(std::int32_t left, std::int32_t bottom, std::int32_t right,
                                    std::int32_t top, float nearest_depth) const {

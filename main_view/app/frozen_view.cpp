@@ -17,10 +17,6 @@ constexpr glm::vec4 k_frustum_color{1.0f, 0.82f, 0.10f, 1.0f};
 constexpr glm::vec4 k_frustum_fill{1.0f, 0.86f, 0.25f, 0.07f};
 constexpr glm::vec4 k_culled_box_color{0.85f, 0.20f, 0.22f, 0.22f};
 
-glm::dvec3 position_of(const Eye& eye) {
-  return glm::dvec3(glm::inverse(eye.camera_from_world)[3]);
-}
-
 /// The frustum's corner rays at unit depth, world frame: lower left, lower right, upper right, upper left.
 std::array<glm::dvec3, 4> corner_rays(const Eye& eye) {
   const glm::dmat4 camera_from_clip = glm::inverse(eye.clip_from_camera);

@@ -67,7 +67,7 @@ SceneRenderer::SceneRenderer(const Scene& scene, GpuScene& gpu_scene)
 }
 
 DrawStats SceneRenderer::draw(const RenderTarget& target, const Eye& eye, std::span<const ObjectId> ids) {
-  const glm::dvec3 eye_m = glm::dvec3(glm::inverse(eye.camera_from_world)[3]) - gpu_scene_.world_origin_m();
+  const glm::dvec3 eye_m = position_of(eye) - gpu_scene_.world_origin_m();
   target.bind();
   apply_depth_convention();
   glDisable(GL_BLEND);

@@ -7,7 +7,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "main_view/client/seen_in_view.hpp"
+#include "common/view.hpp"
 #include "protocol/message_checks.hpp"
 
 namespace sightline {

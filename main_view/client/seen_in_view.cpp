@@ -9,11 +9,6 @@
 
 namespace sightline {
 
-glm::dvec3 position_of(const Eye& eye) noexcept {
-  const glm::dmat4& m = eye.camera_from_world;
-  return -(glm::transpose(glm::dmat3(m)) * glm::dvec3(m[3]));
-}
-
 VisibleSet seen_in_view(const FiledSet& filed, std::span<const Eye> eyes) {
   const std::vector<ObjectId> ids = filed.set.to_ids();
   const std::span<const DirectionExtent> extents = filed.set.extents();

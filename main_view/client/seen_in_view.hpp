@@ -7,9 +7,6 @@
 
 namespace sightline {
 
-/// Where an eye is, world frame.
-[[nodiscard]] glm::dvec3 position_of(const Eye& eye) noexcept;
-
 /// The objects of a set that were seen in directions which the view of any of `eyes` reaches. A set's field
 /// is wider than a view; what was seen outside the view need not be drawn, though its box may reach in.
 ///

@@ -202,7 +202,7 @@ class RasterEngine final : public VisibilityEngine {
     if (query.doubt->near_reach_m <= 0.0) return;
     near_.clear();
     for (const Eye& eye : query.eyes) {
-      const glm::dvec3 eye_m = glm::dvec3(glm::inverse(eye.camera_from_world)[3]) - scene_.world_origin_m;
+      const glm::dvec3 eye_m = position_of(eye) - scene_.world_origin_m;
       const auto reach_m = static_cast<float>(query.doubt->near_reach_m);
       append_objects_near(scene_, hierarchy_, glm::vec3(eye_m), reach_m, near_);
     }
@@ -303,8 +303,7 @@ class RasterEngine final : public VisibilityEngine {
     // Views first: tasks point at them.
     for (const Eye& eye : query.eyes) views_.push_back(view_of(eye, scene_.world_origin_m, image));
     for (std::size_t eye = 0; eye < query.eyes.size(); ++eye) {
-      const glm::dvec3 eye_m =
-          glm::dvec3(glm::inverse(query.eyes[eye].camera_from_world)[3]) - scene_.world_origin_m;
+      const glm::dvec3 eye_m = position_of(query.eyes[eye]) - scene_.world_origin_m;
       std::vector<std::uint32_t>& first = first_[eye];
       const std::vector<std::uint32_t>* seen = &seen_.of(session_, eye);
       // A second eye that has seen nothing yet begins with what the first one saw.
