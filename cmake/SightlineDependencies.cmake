@@ -11,6 +11,7 @@ find_package(Stb REQUIRED)             # cmake/FindStb.cmake
 find_package(ImGui REQUIRED)           # cmake/FindImGui.cmake
 find_package(FlatBuffers REQUIRED CONFIG)
 find_package(ZeroMQ REQUIRED)          # cmake/FindZeroMQ.cmake (libzmq through cppzmq)
+find_package(Sodium REQUIRED)          # cmake/FindSodium.cmake (digests of uploaded scenes)
 find_package(roaring REQUIRED CONFIG)
 find_package(Ceres REQUIRED)
 find_package(nlohmann_json REQUIRED)

@@ -101,6 +101,9 @@ class Reader {
       for (const wire::Presence* presence : *from.presence())
         message.presence.push_back(ObjectPresence{ObjectId{presence->id()}, presence->present()});
     }
+    message.view = from.view();
+    message.view_kind = static_cast<ViewKind>(from.view_kind());
+    message.control_size = size(from.control_size());
     return message;
   }
 
@@ -113,21 +116,66 @@ class Reader {
     message.scene_digest = digest(from.scene_digest());
     message.base_seq = from.base_seq();
     message.visible_count = from.visible_count();
-    if (from.bitmap() != nullptr) message.bitmap.assign(from.bitmap()->begin(), from.bitmap()->end());
-    if (from.extents_of() != nullptr)
-      message.extents_of.assign(from.extents_of()->begin(), from.extents_of()->end());
-    if (from.extents() != nullptr) message.extents.assign(from.extents()->begin(), from.extents()->end());
+    message.bitmap = bytes(from.bitmap());
+    message.extents_of = bytes(from.extents_of());
+    message.extents = bytes(from.extents());
     if (const wire::StageTimes* times = from.times()) {
       message.times = StageTimes{times->queue_s(), times->cull_s(),   times->draw_s(),
                                  times->count_s(), times->filter_s(), times->encode_s()};
     }
     message.drawn_objects = from.drawn_objects();
+    message.view = from.view();
     return message;
   }
 
   Message body(const wire::Ping& from) { return Ping{from.nonce(), from.time_s()}; }
   Message body(const wire::Pong& from) { return Pong{from.nonce(), from.time_s()}; }
   Message body(const wire::Goodbye& from) { return Goodbye{from.session_id()}; }
+
+  Message body(const wire::SceneOffer& from) {
+    SceneOffer message{from.version(),      digest(from.scene_digest()), from.byte_count(),
+                       from.object_count(), from.triangle_count(),       {}};
+    const auto* digests = from.chunk_digests();
+    if (digests == nullptr) return message;
+    constexpr std::size_t digest_bytes = sizeof(SceneDigest);
+    if (digests->size() % digest_bytes != 0) refuse("chunk_digests: not 16 bytes a chunk");
+    message.chunk_digests.resize(digests->size() / digest_bytes);
+    for (std::size_t i = 0; i < message.chunk_digests.size(); ++i)
+      std::copy_n(digests->data() + digest_bytes * i, digest_bytes, message.chunk_digests[i].begin());
+    return message;
+  }
+
+  Message body(const wire::SceneStatus& from) {
+    return SceneStatus{digest(from.scene_digest()), static_cast<SceneState>(from.state()),
+                       text(from.text(), "text"),   from.chunk_count(),
+                       from.chunks_held(),          bytes(from.held())};
+  }
+
+  Message body(const wire::SceneChunk& from) {
+    return SceneChunk{digest(from.scene_digest()), from.index(), bytes(from.bytes())};
+  }
+
+  Message body(const wire::Why& from) {
+    return Why{from.session_id(), from.nonce(), from.view(), ObjectId{from.object_id()}};
+  }
+
+  Message body(const wire::WhyAnswer& from) {
+    WhyAnswer message;
+    message.session_id = from.session_id();
+    message.nonce = from.nonce();
+    message.view = from.view();
+    message.object_id = ObjectId{from.object_id()};
+    message.request_seq = from.request_seq();
+    message.state = static_cast<WhyState>(from.state());
+    message.pixels = from.pixels();
+    message.pixels_mean = from.pixels_mean();
+    message.threshold = from.threshold();
+    if (within(from.hidden_by(), k_max_blockers, "hidden_by")) {
+      for (const wire::Blocker* blocker : *from.hidden_by())
+        message.hidden_by.push_back({ObjectId{blocker->id()}, blocker->pixels()});
+    }
+    return message;
+  }
 
  private:
   void refuse(std::string reason) {
@@ -154,6 +202,11 @@ class Reader {
     SceneDigest digest{};
     if (from != nullptr) std::copy(from->bytes()->begin(), from->bytes()->end(), digest.begin());
     return digest;
+  }
+
+  static std::vector<std::uint8_t> bytes(const flatbuffers::Vector<std::uint8_t>* from) {
+    if (from == nullptr) return {};
+    return std::vector<std::uint8_t>(from->data(), from->data() + from->size());
   }
 
   static ImageSize size(const wire::ImageSize* from) {
@@ -194,6 +247,16 @@ std::optional<Message> read_body(const wire::Envelope& envelope, Reader& reader)
       return reader.body(*envelope.body_as_Pong());
     case wire::Body::Goodbye:
       return reader.body(*envelope.body_as_Goodbye());
+    case wire::Body::SceneOffer:
+      return reader.body(*envelope.body_as_SceneOffer());
+    case wire::Body::SceneStatus:
+      return reader.body(*envelope.body_as_SceneStatus());
+    case wire::Body::SceneChunk:
+      return reader.body(*envelope.body_as_SceneChunk());
+    case wire::Body::Why:
+      return reader.body(*envelope.body_as_Why());
+    case wire::Body::WhyAnswer:
+      return reader.body(*envelope.body_as_WhyAnswer());
     case wire::Body::NONE:
       break;
   }

@@ -46,6 +46,10 @@ wire::Presence to_wire(const ObjectPresence& presence) {
   return {index_of(presence.id), presence.present};
 }
 
+wire::Blocker to_wire(const Blocker& blocker) {
+  return {index_of(blocker.id), blocker.pixels};
+}
+
 /// An empty text, list or size is left out: its field then reads as empty, and the frame is shorter.
 Offset<flatbuffers::String> text_to_wire(FlatBufferBuilder& builder, const std::string& text) {
   if (text.empty()) return 0;
@@ -58,6 +62,12 @@ Offset<flatbuffers::Vector<const WireStruct*>> list_to_wire(FlatBufferBuilder& b
   if (values.empty()) return 0;
   return builder.CreateVectorOfStructs<WireStruct>(
       values.size(), [&](std::size_t i, WireStruct* place) { *place = to_wire(values[i]); });
+}
+
+Offset<flatbuffers::Vector<std::uint8_t>> bytes_to_wire(FlatBufferBuilder& builder,
+                                                        const std::vector<std::uint8_t>& bytes) {
+  if (bytes.empty()) return 0;
+  return builder.CreateVector(bytes);
 }
 
 Offset<void> body_to_wire(FlatBufferBuilder& builder, const Hello& message) {
@@ -93,9 +103,12 @@ Offset<void> body_to_wire(FlatBufferBuilder& builder, const ViewRequest& message
   const auto boxed = list_to_wire<wire::Box>(builder, message.boxed);
   const auto presence = list_to_wire<wire::Presence>(builder, message.presence);
   const wire::ImageSize main_size = to_wire(message.main_size);
+  const wire::ImageSize control_size = to_wire(message.control_size);
   return wire::CreateViewRequest(builder, message.session_id, message.request_seq, message.for_time_s, eyes,
                                  &main_size, message.rotation_error_rad, message.position_error_m,
-                                 message.acked_set_seq, message.reset_filter, moves, boxed, presence)
+                                 message.acked_set_seq, message.reset_filter, moves, boxed, presence,
+                                 message.view, static_cast<wire::ViewKind>(message.view_kind),
+                                 message.control_size == ImageSize{} ? nullptr : &control_size)
       .Union();
 }
 
@@ -105,14 +118,11 @@ Offset<void> body_to_wire(FlatBufferBuilder& builder, const VisibleSetFrame& mes
   const auto wire_times = wire::CreateStageTimes(builder, times.queue_s, times.cull_s, times.draw_s,
                                                  times.count_s, times.filter_s, times.encode_s);
   const wire::Digest digest = to_wire(message.scene_digest);
-  const auto bytes_to_wire = [&](const std::vector<std::uint8_t>& bytes) {
-    return bytes.empty() ? 0 : builder.CreateVector(bytes);
-  };
-  const auto extents_of = bytes_to_wire(message.extents_of);
-  const auto extents = bytes_to_wire(message.extents);
+  const auto extents_of = bytes_to_wire(builder, message.extents_of);
+  const auto extents = bytes_to_wire(builder, message.extents);
   return wire::CreateVisibleSet(builder, message.session_id, message.set_seq, message.request_seq,
                                 message.for_time_s, &digest, message.base_seq, message.visible_count, bitmap,
-                                wire_times, message.drawn_objects, extents_of, extents)
+                                wire_times, message.drawn_objects, extents_of, extents, message.view)
       .Union();
 }
 
@@ -128,6 +138,47 @@ Offset<void> body_to_wire(FlatBufferBuilder& builder, const Goodbye& message) {
   return wire::CreateGoodbye(builder, message.session_id).Union();
 }
 
+Offset<void> body_to_wire(FlatBufferBuilder& builder, const SceneOffer& message) {
+  const wire::Digest digest = to_wire(message.scene_digest);
+  std::uint8_t* digests = nullptr;
+  const auto chunk_digests =
+      builder.CreateUninitializedVector(sizeof(SceneDigest) * message.chunk_digests.size(), &digests);
+  for (const SceneDigest& chunk : message.chunk_digests) digests = std::ranges::copy(chunk, digests).out;
+  return wire::CreateSceneOffer(builder, message.version, &digest, message.byte_count, message.object_count,
+                                message.triangle_count, chunk_digests)
+      .Union();
+}
+
+Offset<void> body_to_wire(FlatBufferBuilder& builder, const SceneStatus& message) {
+  const wire::Digest digest = to_wire(message.scene_digest);
+  const auto text = text_to_wire(builder, message.text);
+  const auto held = bytes_to_wire(builder, message.held);
+  return wire::CreateSceneStatus(builder, &digest, static_cast<wire::SceneState>(message.state), text,
+                                 message.chunk_count, message.chunks_held, held)
+      .Union();
+}
+
+Offset<void> body_to_wire(FlatBufferBuilder& builder, const SceneChunk& message) {
+  const wire::Digest digest = to_wire(message.scene_digest);
+  const auto bytes = bytes_to_wire(builder, message.bytes);
+  return wire::CreateSceneChunk(builder, &digest, message.index, bytes).Union();
+}
+
+Offset<void> body_to_wire(FlatBufferBuilder& builder, const Why& message) {
+  return wire::CreateWhy(builder, message.session_id, message.nonce, message.view,
+                         index_of(message.object_id))
+      .Union();
+}
+
+Offset<void> body_to_wire(FlatBufferBuilder& builder, const WhyAnswer& message) {
+  const auto hidden_by = list_to_wire<wire::Blocker>(builder, message.hidden_by);
+  return wire::CreateWhyAnswer(builder, message.session_id, message.nonce, message.view,
+                               index_of(message.object_id), message.request_seq,
+                               static_cast<wire::WhyState>(message.state), message.pixels,
+                               message.pixels_mean, message.threshold, hidden_by)
+      .Union();
+}
+
 wire::Body type_of(const Message& message) {
   struct Types {
     wire::Body operator()(const Hello&) const { return wire::Body::Hello; }
@@ -138,6 +189,11 @@ wire::Body type_of(const Message& message) {
     wire::Body operator()(const Ping&) const { return wire::Body::Ping; }
     wire::Body operator()(const Pong&) const { return wire::Body::Pong; }
     wire::Body operator()(const Goodbye&) const { return wire::Body::Goodbye; }
+    wire::Body operator()(const SceneOffer&) const { return wire::Body::SceneOffer; }
+    wire::Body operator()(const SceneStatus&) const { return wire::Body::SceneStatus; }
+    wire::Body operator()(const SceneChunk&) const { return wire::Body::SceneChunk; }
+    wire::Body operator()(const Why&) const { return wire::Body::Why; }
+    wire::Body operator()(const WhyAnswer&) const { return wire::Body::WhyAnswer; }
   };
   return std::visit(Types{}, message);
 }

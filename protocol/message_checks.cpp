@@ -6,6 +6,8 @@
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 
+#include "protocol/scene_chunks.hpp"
+
 namespace sightline {
 namespace {
 
@@ -152,6 +154,14 @@ Fault fault_of(const Refusal& message) {
   return {};
 }
 
+Fault fault_of_view(std::uint8_t view) {
+  return "view: " + std::to_string(view) + ", must be below " + std::to_string(k_max_views);
+}
+
+bool is_control_size(const ImageSize& size) {
+  return is_image_size(size) && std::uint64_t{size.width} * size.height <= k_max_control_pixels;
+}
+
 Fault fault_of(const ViewRequest& message) {
   if (message.request_seq == 0) return "request_seq: 0";
   if (!is_time(message.for_time_s)) return "for_time_s: not a time";
@@ -161,6 +171,10 @@ Fault fault_of(const ViewRequest& message) {
   if (Fault fault = fault_of_eyes(message.eyes)) return fault;
   if (Fault fault = fault_of_moves(message.moves)) return fault;
   if (Fault fault = fault_of_boxed(message.boxed)) return fault;
+  if (message.view >= k_max_views) return fault_of_view(message.view);
+  if (message.view_kind > ViewKind::shadow_map) return "view_kind: unknown";
+  if (!is_control_size(message.control_size))
+    return "control_size: not an image size, or above " + std::to_string(k_max_control_pixels) + " pixels";
   return fault_of_ids(message.presence, "presence");
 }
 
@@ -175,6 +189,7 @@ Fault fault_of(const VisibleSetFrame& message) {
        {times.queue_s, times.cull_s, times.draw_s, times.count_s, times.filter_s, times.encode_s}) {
     if (!is_duration(time_s)) return "times: negative or not finite";
   }
+  if (message.view >= k_max_views) return fault_of_view(message.view);
   return {};
 }
 
@@ -189,6 +204,45 @@ Fault fault_of(const Pong& message) {
 }
 
 Fault fault_of(const Goodbye&) {
+  return {};
+}
+
+Fault fault_of(const SceneOffer& message) {
+  // What does not add up is refused with the rest of the offer, by its digest; here only what cannot be kept.
+  if (message.object_count > k_max_object_count) return "object_count: too large";
+  const std::uint64_t chunks = chunk_count_of(message.byte_count);
+  if (message.byte_count == 0) return "byte_count: 0";
+  if (message.chunk_digests.size() != chunks) {
+    return "chunk_digests: " + std::to_string(message.chunk_digests.size()) + ", must be " +
+           std::to_string(chunks);
+  }
+  return {};
+}
+
+Fault fault_of(const SceneStatus& message) {
+  if (message.state < SceneState::uploading || message.state > SceneState::failed) return "state: unknown";
+  if (message.chunks_held > message.chunk_count) return "chunks_held: above chunk_count";
+  return {};
+}
+
+Fault fault_of(const SceneChunk& message) {
+  if (message.bytes.empty()) return "bytes: none";
+  if (message.bytes.size() > k_scene_chunk_bytes)
+    return "bytes: above " + std::to_string(k_scene_chunk_bytes);
+  return {};
+}
+
+Fault fault_of(const Why& message) {
+  if (message.view >= k_max_views) return fault_of_view(message.view);
+  if (index_of(message.object_id) >= k_max_object_count) return "object_id: too large";
+  return {};
+}
+
+Fault fault_of(const WhyAnswer& message) {
+  if (message.view >= k_max_views) return fault_of_view(message.view);
+  if (message.state < WhyState::unknown || message.state > WhyState::boxed) return "state: unknown";
+  if (!is_setting(message.pixels_mean)) return "pixels_mean: negative or not finite";
+  if (!is_setting(message.threshold)) return "threshold: negative or not finite";
   return {};
 }
 

@@ -93,6 +93,12 @@ struct ObjectPresence {
   bool operator==(const ObjectPresence&) const = default;
 };
 
+/// What a view is drawn for.
+enum class ViewKind : std::uint8_t {
+  image,      ///< to be looked at, itself or in a mirror
+  shadow_map  ///< from a light: what casts no shadow neither hides here nor is reported
+};
+
 /// Client to daemon: what will be visible from here?
 struct ViewRequest {
   std::uint64_t session_id = 0;
@@ -107,10 +113,18 @@ struct ViewRequest {
   std::vector<ObjectMove> moves;    ///< every move since the last one acknowledged by a set
   std::vector<BoxedObject> boxed;   ///< objects on the move, for this request alone; ascending ids
   std::vector<ObjectPresence> presence;  ///< every change since the last one acknowledged; ascending ids
+  /// Which of the session's views, below k_max_views. Each has its own request numbers, sets and filter, and
+  /// a request takes the place of older ones of its own view only.
+  std::uint8_t view = 0;
+  ViewKind view_kind = ViewKind::image;
+  ImageSize control_size;  ///< of the daemon's image for this view, pixels; 0x0: as the Welcome says
 
   bool operator==(const ViewRequest&) const = default;
 };
 inline constexpr std::size_t k_max_eyes = 8;
+inline constexpr std::size_t k_max_views = 16;
+/// Largest control image a client may ask for, pixels: a large screen's.
+inline constexpr std::uint64_t k_max_control_pixels = 3840ull * 2160ull;
 
 /// Times the daemon spent on one request, seconds, by stage.
 struct StageTimes {
@@ -142,6 +156,7 @@ struct VisibleSetFrame {
   std::vector<std::uint8_t> extents;  ///< five bytes each: see DirectionExtent, in the order of its members
   StageTimes times;
   std::uint32_t drawn_objects = 0;  ///< objects the engine drew for it
+  std::uint8_t view = 0;            ///< as in the request
 
   bool operator==(const VisibleSetFrame&) const = default;
 };
@@ -167,6 +182,96 @@ struct Goodbye {
   bool operator==(const Goodbye&) const = default;
 };
 
-using Message = std::variant<Hello, Welcome, Refusal, ViewRequest, VisibleSetFrame, Ping, Pong, Goodbye>;
+/// Client to daemon, with or without a session: I have this scene, do you? See scene_chunks.hpp for the
+/// digests.
+struct SceneOffer {
+  std::uint16_t version = k_protocol_version;
+  SceneDigest scene_digest{};
+  std::uint64_t byte_count = 0;
+  std::uint32_t object_count = 0;  ///< spare ones included
+  std::uint64_t triangle_count = 0;
+  std::vector<SceneDigest> chunk_digests;
+
+  bool operator==(const SceneOffer&) const = default;
+};
+
+enum class SceneState : std::uint8_t {
+  uploading = 1,  ///< chunks are missing
+  building = 2,   ///< all are there; the engine is being made
+  ready = 3,      ///< say Hello with this digest
+  failed = 4      ///< and the text says why; nothing of it is kept
+};
+
+/// Daemon to client: how far the scene is.
+struct SceneStatus {
+  SceneDigest scene_digest{};
+  SceneState state = SceneState::uploading;
+  std::string text;  ///< one line for a person
+  std::uint32_t chunk_count = 0;
+  std::uint32_t chunks_held = 0;
+  /// The chunks the daemon has, CRoaring portable format: in the answer to an offer, else empty.
+  std::vector<std::uint8_t> held;
+
+  bool operator==(const SceneStatus&) const = default;
+};
+
+/// Client to daemon: a piece of the scene, k_scene_chunk_bytes but for the last. In any order.
+struct SceneChunk {
+  SceneDigest scene_digest{};
+  std::uint32_t index = 0;
+  std::vector<std::uint8_t> bytes;
+
+  bool operator==(const SceneChunk&) const = default;
+};
+
+/// Client to daemon: why is, or is not, this object in the view's newest set?
+struct Why {
+  std::uint64_t session_id = 0;
+  std::uint64_t nonce = 0;  ///< copied into the answer
+  std::uint8_t view = 0;
+  ObjectId object_id{};
+
+  bool operator==(const Why&) const = default;
+};
+
+enum class WhyState : std::uint8_t {
+  unknown = 1,          ///< no request of this view was answered yet
+  visible = 2,          ///< the last look saw it
+  outside = 3,          ///< of the field that was looked at
+  hidden = 4,           ///< by the objects in hidden_by
+  below_threshold = 5,  ///< seen, in too few pixels
+  held_by_filter = 6,   ///< in the set since an earlier look saw it; the last did not
+  absent = 7,           ///< the client said that it is not there
+  open = 8,             ///< not seen, but may show between two samples or from nearby
+  boxed = 9             ///< on the move; its box may show
+};
+
+/// An object that hides another, in how many of its pixels.
+struct Blocker {
+  ObjectId id{};
+  std::uint32_t pixels = 0;
+
+  bool operator==(const Blocker&) const = default;
+};
+
+/// Daemon to client.
+struct WhyAnswer {
+  std::uint64_t session_id = 0;
+  std::uint64_t nonce = 0;
+  std::uint8_t view = 0;
+  ObjectId object_id{};
+  std::uint64_t request_seq = 0;  ///< the look it speaks of
+  WhyState state = WhyState::unknown;
+  std::uint32_t pixels = 0;        ///< in the last look
+  double pixels_mean = 0.0;        ///< over the filter's answers
+  double threshold = 0.0;          ///< that the mean must be above
+  std::vector<Blocker> hidden_by;  ///< most pixels first, k_max_blockers at most
+
+  bool operator==(const WhyAnswer&) const = default;
+};
+inline constexpr std::size_t k_max_blockers = 64;
+
+using Message = std::variant<Hello, Welcome, Refusal, ViewRequest, VisibleSetFrame, Ping, Pong, Goodbye,
+                             SceneOffer, SceneStatus, SceneChunk, Why, WhyAnswer>;
 
 }  // namespace sightline
