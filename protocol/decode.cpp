@@ -191,7 +191,7 @@ class Reader {
       refuse(std::string(field) + ": " + std::to_string(list->size()) + ", at most " + std::to_string(limit));
       return false;
     }
-    if (reinterpret_cast<std::uintptr_t>(list->Data()) % alignof(WireStruct) != 0) {
+    if (list->size() > 0 && reinterpret_cast<std::uintptr_t>(list->Data()) % alignof(WireStruct) != 0) {
       refuse(std::string(field) + ": not aligned");
       return false;
     }

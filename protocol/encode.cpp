@@ -198,15 +198,47 @@ wire::Body type_of(const Message& message) {
   return std::visit(Types{}, message);
 }
 
+/// Room that a frame takes but for its lists. A builder that grows copies what it has.
+constexpr std::size_t k_small_frame_bytes = 1024;
+
+template <typename Body>
+std::size_t size_hint(const Body&) {
+  return k_small_frame_bytes;
+}
+std::size_t size_hint(const ViewRequest& message) {
+  return k_small_frame_bytes + sizeof(wire::Eye) * message.eyes.size() +
+         sizeof(wire::Move) * message.moves.size() + sizeof(wire::Box) * message.boxed.size() +
+         sizeof(wire::Presence) * message.presence.size();
+}
+std::size_t size_hint(const VisibleSetFrame& message) {
+  return k_small_frame_bytes + message.bitmap.size() + message.extents_of.size() + message.extents.size();
+}
+std::size_t size_hint(const SceneChunk& message) {
+  return k_small_frame_bytes + message.bytes.size();
+}
+
+Bytes finished(FlatBufferBuilder& builder, wire::Body type, Offset<void> body) {
+  wire::FinishEnvelopeBuffer(builder, wire::CreateEnvelope(builder, type, body));
+  const auto* begin = reinterpret_cast<const std::byte*>(builder.GetBufferPointer());
+  return Bytes(begin, begin + builder.GetSize());
+}
+
 }  // namespace
 
 Bytes encode(const Message& message) {
-  FlatBufferBuilder builder;
+  FlatBufferBuilder builder(std::visit([](const auto& value) { return size_hint(value); }, message));
   const Offset<void> body =
       std::visit([&](const auto& value) { return body_to_wire(builder, value); }, message);
-  wire::FinishEnvelopeBuffer(builder, wire::CreateEnvelope(builder, type_of(message), body));
-  const auto* begin = reinterpret_cast<const std::byte*>(builder.GetBufferPointer());
-  return Bytes(begin, begin + builder.GetSize());
+  return finished(builder, type_of(message), body);
+}
+
+Bytes encode_scene_chunk(const SceneDigest& scene_digest, std::uint32_t index,
+                         std::span<const std::uint8_t> bytes) {
+  FlatBufferBuilder builder(k_small_frame_bytes + bytes.size());
+  const auto wire_bytes = builder.CreateVector(bytes.data(), bytes.size());
+  const wire::Digest digest = to_wire(scene_digest);
+  return finished(builder, wire::Body::SceneChunk,
+                  wire::CreateSceneChunk(builder, &digest, index, wire_bytes).Union());
 }
 
 }  // namespace sightline

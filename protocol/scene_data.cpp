@@ -78,7 +78,7 @@ class Reader {
                              FromWire from_wire) {
     if (list == nullptr) return {};
     // The verifier checks where a list's length lies, not its elements.
-    if (reinterpret_cast<std::uintptr_t>(list->Data()) % alignof(WireStruct) != 0) {
+    if (list->size() > 0 && reinterpret_cast<std::uintptr_t>(list->Data()) % alignof(WireStruct) != 0) {
       refuse(std::string(field) + ": not aligned");
       return {};
     }

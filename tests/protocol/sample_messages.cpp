@@ -6,6 +6,8 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
 
+#include "protocol/scene_chunks.hpp"
+
 namespace sightline {
 namespace {
 
@@ -71,6 +73,12 @@ ViewRequest random_request(std::mt19937_64& random) {
   }
   for (const ObjectId id : random_ids(random() % 20, 1000, random))
     message.presence.push_back({id, random() % 2 == 0});
+  message.view = static_cast<std::uint8_t>(random() % k_max_views);
+  message.view_kind = random() % 2 == 0 ? ViewKind::image : ViewKind::shadow_map;
+  if (random() % 2 == 0) {
+    message.control_size = {static_cast<std::uint32_t>(1 + random() % 2000),
+                            static_cast<std::uint32_t>(1 + random() % 2000)};
+  }
   return message;
 }
 
@@ -97,7 +105,55 @@ VisibleSetFrame random_frame(std::mt19937_64& random) {
   const auto time_s = [&] { return random_real(random, 0.0, 1.0); };
   message.times = {time_s(), time_s(), time_s(), time_s(), time_s(), time_s()};
   message.drawn_objects = random_integer<std::uint32_t>(random);
+  message.view = static_cast<std::uint8_t>(random() % k_max_views);
   return message;
+}
+
+SceneOffer random_offer(std::mt19937_64& random) {
+  SceneOffer offer;
+  offer.scene_digest = random_digest(random);
+  offer.byte_count = 1 + random() % (20 * k_scene_chunk_bytes);
+  offer.object_count = random_integer<std::uint32_t>(random) / 2;
+  offer.triangle_count = random();
+  for (std::uint64_t left = chunk_count_of(offer.byte_count); left > 0; --left)
+    offer.chunk_digests.push_back(random_digest(random));
+  return offer;
+}
+
+SceneStatus random_status(std::mt19937_64& random) {
+  SceneStatus status;
+  status.scene_digest = random_digest(random);
+  status.state = static_cast<SceneState>(1 + random() % 4);
+  status.text = random_text(random);
+  status.chunk_count = static_cast<std::uint32_t>(random() % 1000);
+  status.chunks_held = static_cast<std::uint32_t>(random() % (status.chunk_count + 1));
+  status.held = encode_keyframe(VisibleSet(random_ids(status.chunks_held, status.chunk_count + 1, random)));
+  return status;
+}
+
+SceneChunk random_chunk(std::mt19937_64& random) {
+  SceneChunk chunk{random_digest(random), random_integer<std::uint32_t>(random), {}};
+  for (std::uint64_t left = 1 + random() % 300; left > 0; --left)
+    chunk.bytes.push_back(random_integer<std::uint8_t>(random));
+  return chunk;
+}
+
+WhyAnswer random_why_answer(std::mt19937_64& random) {
+  WhyAnswer answer;
+  answer.session_id = random();
+  answer.nonce = random();
+  answer.view = static_cast<std::uint8_t>(random() % k_max_views);
+  answer.object_id = ObjectId{random_integer<std::uint32_t>(random) / 2};
+  answer.request_seq = random();
+  answer.state = static_cast<WhyState>(1 + random() % 9);
+  answer.pixels = random_integer<std::uint32_t>(random);
+  answer.pixels_mean = random_real(random, 0.0, 1e5);
+  answer.threshold = random_real(random, 0.0, 10.0);
+  for (std::uint64_t left = random() % k_max_blockers; left > 0; --left) {
+    answer.hidden_by.push_back(
+        {ObjectId{random_integer<std::uint32_t>(random)}, random_integer<std::uint32_t>(random)});
+  }
+  return answer;
 }
 
 Eye golden_eye() {
@@ -138,6 +194,28 @@ VisibleSetFrame golden_frame() {
 
 }  // namespace
 
+SceneData golden_scene() {
+  SceneData scene;
+  scene.positions = {{-1.0f, 0.0f, -5.0f}, {1.0f, 0.0f, -5.0f}, {1.0f, 2.0f, -5.0f}, {-1.0f, 2.0f, -5.0f}};
+  scene.uvs = {{0.0f, 1.0f}, {1.0f, 1.0f}, {1.0f, 0.0f}, {0.0f, 0.0f}};
+  scene.indices = {0, 1, 2, 2, 3, 0};
+  scene.primitives = {{0, 3, 0}, {3, 3, 1}};
+  scene.meshes = {{0, 2}};
+  SceneData::Material leaves;
+  leaves.texture = 0;
+  leaves.alpha_mode = SceneData::AlphaMode::mask;
+  leaves.double_sided = true;
+  scene.materials = {SceneData::Material{}, leaves};
+  scene.alpha_textures = {{2, 2, true, false, {255, 0, 0, 255}}};
+  SceneData::Object near, far;
+  far.world_from_object[3] = {10.0, 0.0, -20.0};
+  far.flags = static_cast<std::uint32_t>(ObjectFlag::casts_no_shadow);
+  far.group = 7;
+  scene.objects = {near, far};
+  scene.spare_objects = 3;
+  return scene;
+}
+
 std::vector<NamedMessage> golden_messages() {
   const VisibleSet first = set_of({1, 2, 3, 10, 70'000});
   const VisibleSet second = set_of({1, 2, 4, 10, 70'000});
@@ -167,7 +245,37 @@ std::vector<NamedMessage> golden_messages() {
   delta.visible_count = 5;
   delta.bitmap = encode_delta(first, second);
 
+  ViewRequest light;
+  light.session_id = request.session_id;
+  light.request_seq = 1;
+  light.eyes = {golden_eye()};
+  light.view = 3;
+  light.view_kind = ViewKind::shadow_map;
+  light.control_size = {256, 256};
+
+  const std::vector<std::uint8_t> scene = encode_scene_data(golden_scene());
+  const SceneOffer offer = offer_of(scene, static_cast<std::uint32_t>(golden_scene().object_count()),
+                                    golden_scene().triangle_count());
+
   return {
+      {"view_request_of_a_light", light},
+      {"scene_offer", offer},
+      {"scene_status",
+       SceneStatus{offer.scene_digest, SceneState::uploading, "", 20, 3, encode_keyframe(set_of({0, 1, 7}))}},
+      {"scene_status_failed",
+       SceneStatus{offer.scene_digest, SceneState::failed, "this daemon is full", 0, 0, {}}},
+      {"scene_chunk", SceneChunk{offer.scene_digest, 0, scene}},
+      {"why", Why{request.session_id, 42, 3, ObjectId{70'000}}},
+      {"why_answer", WhyAnswer{request.session_id,
+                               42,
+                               3,
+                               ObjectId{70'000},
+                               7,
+                               WhyState::hidden,
+                               0,
+                               0.25,
+                               0.5,
+                               {{ObjectId{3}, 120}, {ObjectId{10}, 4}}}},
       {"hello", Hello{k_protocol_version, "example", golden_digest()}},
       {"welcome", Welcome{k_protocol_version, 0x0123456789ABCDEF, "control_view 0.1.0", "item_buffer", 70'001,
                           ImageSize{512, 384}, 8, 1.0, "histogram", 0.5, 60.0, "default", true}},
@@ -231,8 +339,19 @@ Message random_message(std::size_t kind, std::mt19937_64& random) {
       return Ping{random(), random_real(random, -1e9, 1e9)};
     case 6:
       return Pong{random(), random_real(random, -1e9, 1e9)};
-    default:
+    case 7:
       return Goodbye{random()};
+    case 8:
+      return random_offer(random);
+    case 9:
+      return random_status(random);
+    case 10:
+      return random_chunk(random);
+    case 11:
+      return Why{random(), random(), static_cast<std::uint8_t>(random() % k_max_views),
+                 ObjectId{random_integer<std::uint32_t>(random) / 2}};
+    default:
+      return random_why_answer(random);
   }
 }
 

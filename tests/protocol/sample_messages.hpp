@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "protocol/messages.hpp"
+#include "protocol/scene_data.hpp"
 #include "protocol/visible_set.hpp"
 
 namespace sightline {
@@ -16,6 +17,9 @@ struct NamedMessage {
 
 /// One fixed message of each kind, both forms of a visible set: what the golden frames hold.
 [[nodiscard]] std::vector<NamedMessage> golden_messages();
+
+/// The scene that the golden offer and chunk are of.
+[[nodiscard]] SceneData golden_scene();
 
 /// A valid message with every field set at random; `kind` is its index in Message.
 [[nodiscard]] Message random_message(std::size_t kind, std::mt19937_64& random);
