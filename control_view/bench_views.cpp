@@ -17,7 +17,7 @@ constexpr std::array<std::string_view, 4> k_names{"single", "stereo", "around", 
 constexpr double k_eye_separation_m = 0.064;
 constexpr double k_region_radius_m = 0.1;
 /// More than four hours at 60 views a second.
-constexpr double k_max_views = 1'000'000;
+constexpr double k_most_bench_views = 1'000'000;
 
 double aspect_of(ImageSize size) {
   return static_cast<double>(size.width) / static_cast<double>(size.height);
@@ -92,8 +92,8 @@ std::vector<double> bench_times(const CameraPath& path, const BenchOptions& opti
   // The small addition keeps a duration that is a whole number of frames from losing the last to rounding.
   const double on_path = std::floor(left_s * options.rate_hz / options.step + 1e-6) + 1.0;
   const double wanted = options.frames == 0 ? on_path : std::min<double>(options.frames, on_path);
-  if (wanted > k_max_views) {
-    throw InputError(options.path + ": more than " + std::to_string(static_cast<long>(k_max_views)) +
+  if (wanted > k_most_bench_views) {
+    throw InputError(options.path + ": more than " + std::to_string(static_cast<long>(k_most_bench_views)) +
                      " views; give fewer with --frames or --step, or a lower --rate");
   }
   std::vector<double> times_s(static_cast<std::size_t>(wanted));

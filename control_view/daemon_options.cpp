@@ -41,7 +41,7 @@ using Kind = OptionField::Kind;
 using Options = DaemonOptions;
 using Text = const std::string&;
 
-constexpr std::array<OptionField, 15> k_fields{{
+constexpr std::array<OptionField, 21> k_fields{{
     {"bind", Kind::text, "endpoint, tcp://HOST:PORT (* for any free port) or ipc://PATH",
      [](Options& o, Text t) { o.bind = not_empty(t, "a tcp:// or ipc:// endpoint"); }},
     {"scene", Kind::text, "scene file", [](Options& o, Text t) { o.scene = not_empty(t, "a scene file"); }},
@@ -86,6 +86,31 @@ constexpr std::array<OptionField, 15> k_fields{{
     {"silence_limit", Kind::number, "seconds without a word after which a session is closed",
      [](Options& o, Text t) {
        o.silence_limit_s = parse_number<double>(t, 0.1, 86400.0, "seconds from 0.1 to 86400");
+     }},
+    {"uploads", Kind::on_off, "take scenes that clients bring, on or off",
+     [](Options& o, Text t) {
+       o.uploads = one_of(t, {"on", "off"}, "on or off") == "on";
+     }},
+    {"max_scene_mib", Kind::integer, "MiB of one uploaded scene at most",
+     [](Options& o, Text t) {
+       o.max_scene_mib = parse_number<std::uint64_t>(t, 1, 2047, "MiB from 1 to 2047");
+     }},
+    {"max_scenes_mib", Kind::integer, "MiB of all uploaded scenes together at most",
+     [](Options& o, Text t) {
+       o.max_scenes_mib = parse_number<std::uint64_t>(t, 1, 1u << 24, "MiB from 1 to 16777216");
+     }},
+    {"max_scenes", Kind::integer, "uploaded scenes at a time",
+     [](Options& o, Text t) {
+       o.max_scenes = parse_number<std::uint32_t>(t, 1, 1024, "a number from 1 to 1024");
+     }},
+    {"max_objects", Kind::integer, "objects of one uploaded scene at most",
+     [](Options& o, Text t) {
+       o.max_objects = parse_number<std::uint32_t>(t, 1, 1u << 24, "a number from 1 to 16777216");
+     }},
+    {"max_triangles", Kind::integer,
+     "triangles of one uploaded scene at most, shared meshes counted for each object",
+     [](Options& o, Text t) {
+       o.max_triangles = parse_number<std::uint64_t>(t, 1, 1ull << 40, "a number from 1 to 2^40");
      }},
     {"keys", Kind::text, "CURVE key file: encrypt, see `control_view keygen`",
      [](Options& o, Text t) { o.keys = not_empty(t, "a key file"); }},

@@ -28,6 +28,13 @@ struct DaemonOptions {
   std::uint32_t max_sessions = 16;
   double control_rate_hz = 0.0;  ///< answers a second at most, 0: no limit
   double silence_limit_s = 5.0;
+  // Scenes that clients bring, see IntakeLimits.
+  bool uploads = true;
+  std::uint64_t max_scene_mib = 512;
+  std::uint64_t max_scenes_mib = 2048;
+  std::uint32_t max_scenes = 16;
+  std::uint32_t max_objects = 1u << 18;
+  std::uint64_t max_triangles = 1ull << 26;
   std::string keys;      ///< CURVE key file; empty: no encryption
   std::string announce;  ///< file the bound endpoint is written to when ready
   std::string log = "info";

@@ -1,9 +1,11 @@
 #include "control_view/serve.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 #include <utility>
@@ -52,21 +54,50 @@ ServiceOptions service_options(const DaemonOptions& options, const EngineOptions
   return service;
 }
 
+/// What is served from the start.
 struct Served {
-  SceneIdentity scene;
-  ChosenEngine chosen;
+  ServedScenePtr own;    ///< null without a scene file
+  EngineOptions engine;  ///< as chosen for it
+  std::string why;       ///< one line for the log
 };
+
+/// Engines for scenes that come over the wire. They are made on one thread and used on another, which an
+/// OpenGL context does not allow.
+EngineOptions engine_for_uploads(const EngineOptions& options) {
+  const bool on_cpu = options.engine == "raster" || options.engine == "raycast";
+  EngineOptions engine = options;
+  if (!on_cpu) {
+    engine.engine = "raster";
+    engine.counter.clear();
+  }
+  return engine;
+}
 
 /// Loads the scene and hands it to the engine. The arrays die here: from now on the geometry is the engine's.
 Served make_served(const DaemonOptions& options) {
+  if (options.scene.empty())
+    return {nullptr, engine_for_uploads(options.engine), "no scene yet: waiting for clients to bring one"};
   Served served;
   {
     const Scene scene = load_scene(options.scene, {.shading = false});
-    served.scene = {scene.digest, scene.object_count()};
-    served.chosen = choose_engine(scene, options.engine, options.size, steady_clock());
+    ChosenEngine chosen = choose_engine(scene, options.engine, options.size, steady_clock());
+    served.own = served_scene({scene.digest, scene.object_count()}, std::move(chosen.engine));
+    served.engine = chosen.options;
+    served.why = chosen.why;
   }
   malloc_trim(0);
   return served;
+}
+
+IntakeLimits intake_limits(const DaemonOptions& options) {
+  constexpr std::uint64_t k_mib = 1u << 20;
+  IntakeLimits limits;
+  limits.scene_bytes = options.max_scene_mib * k_mib;
+  limits.all_bytes = options.max_scenes_mib * k_mib;
+  limits.scenes = options.max_scenes;
+  limits.objects = options.max_objects;
+  limits.triangles = options.max_triangles;
+  return limits;
 }
 
 /// The endpoint in a file, for as long as it is served.
@@ -102,15 +133,25 @@ struct SocketFile {
 
 /// Runs the service until a signal.
 void serve_on(ServerLink& link, Served& served, const DaemonOptions& options, const StopSignal& stop) {
-  Service service(link, *served.chosen.engine, served.scene, service_options(options, served.chosen.options),
+  SceneStore scenes(served.own);
+  std::optional<SceneIntake> intake;
+  if (options.uploads) {
+    intake.emplace(scenes, intake_limits(options),
+                   [engine = engine_for_uploads(served.engine)](const Scene& scene) {
+                     return make_engine(scene, engine);
+                   });
+  }
+  Service service(link, scenes, intake ? &*intake : nullptr, service_options(options, served.engine),
                   steady_clock());
   const std::string endpoint = link.bound_endpoint();
   const Announcement announcement(options.announce, endpoint);
   std::printf("control_view: listening on %s\n", endpoint.c_str());
   std::fflush(stdout);
-  spdlog::info("serving {} ({} objects, digest {})", options.scene, served.scene.object_count,
-               to_hex(served.scene.digest));
-  spdlog::info("{}", served.chosen.why);
+  if (served.own != nullptr) {
+    spdlog::info("serving {} ({} objects, digest {})", options.scene, served.own->identity.object_count,
+                 to_hex(served.own->identity.digest));
+  }
+  spdlog::info("{}", served.why);
 
   while (!stop.requested()) service.step(k_longest_wait);
 
@@ -127,14 +168,19 @@ void serve_on(ServerLink& link, Served& served, const DaemonOptions& options, co
 void serve(const DaemonOptions& options) {
   StopSignal stop;
   log_to_stderr(options.log);
-  if (options.scene.empty())
-    throw InputError("no scene given: use --scene FILE or `scene` in the config file");
+  if (options.scene.empty() && !options.uploads) {
+    throw InputError(
+        "no scene given, and none may be uploaded: use --scene FILE, or `scene` in the config file, or "
+        "--uploads on");
+  }
   (void)resolved(options.engine);
 
   LinkOptions settings = link_options(options);
 
   Served served = make_served(options);
-  settings.max_frame_bytes = largest_frame_of_a_client(served.scene.object_count);
+  const std::uint32_t own_objects = served.own == nullptr ? 0 : served.own->identity.object_count;
+  settings.max_frame_bytes =
+      largest_frame_of_a_client(options.uploads ? std::max(own_objects, options.max_objects) : own_objects);
   // Bound only now: whoever can connect is answered at once, and until now a signal had nothing to clean up.
   stop.defer();
   SocketFile socket_file;

@@ -9,6 +9,7 @@
 #include <spdlog/spdlog.h>
 
 #include "common/error.hpp"
+#include "protocol/scene_chunks.hpp"
 
 namespace sightline {
 namespace {
@@ -18,6 +19,9 @@ namespace {
 constexpr int k_frames_a_step = 256;
 constexpr std::size_t k_bytes_a_step = 1u << 20;
 constexpr double k_reading_a_step_s = 0.005;
+
+/// How often to look whether a scene is built, while nothing else is to be done.
+constexpr std::chrono::milliseconds k_wait_for_builder{1};
 
 /// While a flood leaves frames unread, a silent session may have a word among them: it then gets this many
 /// times the silence limit.
@@ -35,16 +39,26 @@ std::size_t largest_frame_of_a_client(std::uint32_t object_count) noexcept {
                   DecodeLimits{}.max_frame_bytes);
 }
 
-Service::Service(ServerLink& link, VisibilityEngine& engine, SceneIdentity scene, ServiceOptions options,
+Service::Service(ServerLink& link, SceneStore& scenes, SceneIntake* intake, ServiceOptions options,
                  Clock clock)
     : link_(link),
-      engine_(engine),
-      scene_(scene),
+      scenes_(scenes),
+      intake_(intake),
       options_(std::move(options)),
       clock_(std::move(clock)),
       sessions_(options_.max_sessions) {
-  limits_.max_frame_bytes = largest_frame_of_a_client(scene_.object_count);
-  limits_.max_moves = std::min<std::size_t>(limits_.max_moves, scene_.object_count);
+  limits_.max_frame_bytes =
+      std::max(largest_frame_of_a_client(most_objects()), largest_frame_without_session());
+  limits_.max_moves = std::min<std::size_t>(limits_.max_moves, most_objects());
+}
+
+std::uint32_t Service::most_objects() const noexcept {
+  const std::uint32_t own = scenes_.own() == nullptr ? 0 : scenes_.own()->identity.object_count;
+  return intake_ == nullptr ? own : std::max(own, intake_->limits().objects);
+}
+
+std::size_t Service::largest_frame_without_session() const noexcept {
+  return k_frame_without_moves_bytes + (intake_ == nullptr ? 0 : k_scene_chunk_bytes);
 }
 
 void Service::step(std::chrono::milliseconds timeout) {
@@ -52,8 +66,14 @@ void Service::step(std::chrono::milliseconds timeout) {
   const double patience = all_read ? 1.0 : k_patience_in_a_flood;
   const double now_s = clock_();
   counters_.reaped += sessions_.close_silent(now_s - patience * options_.silence_limit_s, now_s);
+  if (intake_ != nullptr) step_intake();
   if (!may_answer_now()) return;
   if (Session* session = sessions_.next_pending()) answer(*session);
+}
+
+void Service::step_intake() {
+  intake_->step(clock_());
+  for (SceneIntake::Notice& notice : intake_->take_notices()) send(notice.peer, std::move(notice.status));
 }
 
 bool Service::drain(std::chrono::milliseconds timeout) {
@@ -79,11 +99,11 @@ void Service::answer(Session& session) {
   }
   const PeerId peer = session.peer();
   try {
-    const Message frame = session.answer(engine_, scene_.digest, began_s);
-    const double encode_began_s = clock_();
-    send(peer, frame);
-    session.note_encode_time(clock_() - encode_began_s);
-    ++counters_.answered;
+    if (session.has_request()) answer_request(session, began_s);
+    if (session.has_question()) {
+      send(peer, session.answer_why());
+      ++counters_.explained;
+    }
   } catch (const MachineError&) {
     throw;  // the engine is lost, and with it every session
   } catch (const std::exception& error) {
@@ -93,12 +113,22 @@ void Service::answer(Session& session) {
   }
 }
 
+void Service::answer_request(Session& session, double began_s) {
+  VisibleSetFrame frame = session.answer(began_s);
+  const std::uint8_t view = frame.view;
+  const double encode_began_s = clock_();
+  send(session.peer(), std::move(frame));
+  session.note_encode_time(view, clock_() - encode_began_s);
+  ++counters_.answered;
+}
+
 bool Service::may_answer_now() const {
   return options_.answer_rate_hz <= 0.0 || clock_() >= next_answer_s_;
 }
 
 std::chrono::milliseconds Service::wait_time(std::chrono::milliseconds timeout) const {
-  if (!sessions_.any_pending()) return timeout;
+  if (!sessions_.any_pending())
+    return intake_ != nullptr && intake_->is_building() ? std::min(timeout, k_wait_for_builder) : timeout;
   if (options_.answer_rate_hz <= 0.0) return std::chrono::milliseconds{0};
   const double wait_ms = std::clamp(std::ceil((next_answer_s_ - clock_()) * 1e3), 0.0, 1e6);
   return std::min(timeout, std::chrono::milliseconds{static_cast<std::int64_t>(wait_ms)});
@@ -114,7 +144,7 @@ void Service::shut_down() {
 
 void Service::receive(const ServerLink::Incoming& incoming) {
   Session* const session = sessions_.of_peer(incoming.peer);
-  if (session == nullptr && incoming.frame.size() > k_frame_without_moves_bytes) {
+  if (session == nullptr && incoming.frame.size() > largest_frame_without_session()) {
     // Most likely a request with many moves, of a session that was closed.
     if (refusal_limit_.take(incoming.peer, clock_())) {
       refuse(incoming.peer, RefusalReason::no_session, "a large frame without a session: say Hello first");
@@ -136,13 +166,18 @@ void Service::handle(const PeerId& peer, Hello&& hello) {
     return refuse(peer, RefusalReason::version_mismatch,
                   fmt::format("this daemon speaks version {}, not {}", k_protocol_version, hello.version));
   }
-  if (hello.scene_digest != scene_.digest) {
-    return refuse(peer, RefusalReason::scene_mismatch,
-                  fmt::format("this daemon serves scene {}, not {}", to_hex(scene_.digest),
-                              to_hex(hello.scene_digest)));
+  const ServedScenePtr scene = scenes_.find(hello.scene_digest);
+  if (scene == nullptr) {
+    const std::string wanted = to_hex(hello.scene_digest);
+    return refuse(
+        peer, RefusalReason::scene_mismatch,
+        scenes_.own() == nullptr || intake_ != nullptr
+            ? fmt::format("this daemon has no scene {}{}", wanted, intake_ == nullptr ? "" : ": offer it")
+            : fmt::format("this daemon serves scene {}, not {}", to_hex(scenes_.own()->identity.digest),
+                          wanted));
   }
   const Session* session =
-      sessions_.open(peer, hello.client_name, VisibilityPipeline(options_.pipeline, clock_), clock_());
+      sessions_.open(peer, hello.client_name, scene, options_.pipeline, clock_, clock_());
   if (session == nullptr) {
     return refuse(peer, RefusalReason::limit,
                   fmt::format("all {} sessions of this daemon are taken", sessions_.capacity()));
@@ -156,7 +191,7 @@ void Service::handle(const PeerId& peer, Hello&& hello) {
   welcome.session_id = session->id();
   welcome.server_name = "control_view";
   welcome.engine = options_.engine_name;
-  welcome.object_count = scene_.object_count;
+  welcome.object_count = scene->identity.object_count;
   welcome.control_size = options_.pipeline.size;
   welcome.filter_length = options_.pipeline.filter_length;
   welcome.heartbeat_interval_s = options_.heartbeat_interval_s;
@@ -173,9 +208,10 @@ void Service::handle(const PeerId& peer, ViewRequest&& request) {
   if (session == nullptr || session->id() != request.session_id) {
     return refuse(peer, RefusalReason::no_session, "no such session of this peer: say Hello first");
   }
+  const std::uint32_t object_count = session->scene().identity.object_count;
   const auto all_in_scene = [&](const auto& list) {
     return std::all_of(list.begin(), list.end(),
-                       [&](const auto& entry) { return index_of(entry.id) < scene_.object_count; });
+                       [&](const auto& entry) { return index_of(entry.id) < object_count; });
   };
   if (!all_in_scene(request.moves) || !all_in_scene(request.boxed) || !all_in_scene(request.presence)) {
     return refuse_malformed(peer, "a moved object is not in the scene");
@@ -194,6 +230,32 @@ void Service::handle(const PeerId& peer, Goodbye&& goodbye) {
   if (session != nullptr && session->id() == goodbye.session_id) sessions_.close(*session);
 }
 
+void Service::handle(const PeerId& peer, Why&& question) {
+  Session* session = sessions_.of_peer(peer);
+  if (session == nullptr || session->id() != question.session_id) {
+    return refuse(peer, RefusalReason::no_session, "no such session of this peer: say Hello first");
+  }
+  if (index_of(question.object_id) >= session->scene().identity.object_count) {
+    return refuse_malformed(peer, "the object asked about is not in the scene");
+  }
+  (void)session->ask(question, clock_());
+}
+
+void Service::handle(const PeerId& peer, SceneOffer&& offer) {
+  if (intake_ != nullptr) return intake_->offer(peer, std::move(offer), clock_());
+  SceneStatus status;
+  status.scene_digest = offer.scene_digest;
+  const bool served = scenes_.find(offer.scene_digest) != nullptr;
+  status.state = served ? SceneState::ready : SceneState::failed;
+  if (!served) status.text = "this daemon takes no scenes over the wire: start it with --uploads on";
+  send(peer, status);
+}
+
+void Service::handle(const PeerId& peer, SceneChunk&& chunk) {
+  if (intake_ != nullptr) return intake_->take(peer, chunk, clock_());
+  refuse_malformed(peer, "this daemon takes no scenes over the wire");
+}
+
 template <class DaemonMessage>
 void Service::handle(const PeerId& peer, DaemonMessage&&) {
   refuse_malformed(peer, "a message that only a daemon sends");
@@ -201,7 +263,8 @@ void Service::handle(const PeerId& peer, DaemonMessage&&) {
 
 void Service::refuse(const PeerId& peer, RefusalReason reason, const std::string& text) {
   ++counters_.refused;
-  send(peer, Refusal{reason, text, k_protocol_version, scene_.digest});
+  const SceneDigest own = scenes_.own() == nullptr ? SceneDigest{} : scenes_.own()->identity.digest;
+  send(peer, Refusal{reason, text, k_protocol_version, own});
 }
 
 void Service::refuse_malformed(const PeerId& peer, const std::string& why) {

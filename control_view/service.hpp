@@ -5,21 +5,15 @@
 #include <string>
 
 #include "control_view/clock.hpp"
-#include "control_view/engine.hpp"
 #include "control_view/rate_limit.hpp"
+#include "control_view/scene_intake.hpp"
+#include "control_view/scene_store.hpp"
 #include "control_view/session_table.hpp"
-#include "control_view/visibility_pipeline.hpp"
 #include "protocol/codec.hpp"
 #include "protocol/endpoint_link.hpp"
 #include "protocol/messages.hpp"
 
 namespace sightline {
-
-/// What the service must know of the scene: its geometry is the engine's.
-struct SceneIdentity {
-  SceneDigest digest{};
-  std::uint32_t object_count = 0;
-};
 
 struct ServiceOptions {
   PipelineOptions pipeline;
@@ -35,6 +29,7 @@ struct ServiceOptions {
 /// Running totals, for logs and tests.
 struct ServiceCounters {
   std::uint64_t answered = 0;
+  std::uint64_t explained = 0;   ///< questions why that were answered
   std::uint64_t superseded = 0;  ///< requests that a newer one of the same session replaced
   std::uint64_t malformed = 0;   ///< frames that no message could be made of
   std::uint64_t refused = 0;     ///< Refusals sent
@@ -43,17 +38,18 @@ struct ServiceCounters {
   std::uint64_t unsent = 0;      ///< frames whose peer was gone or did not read
 };
 
-/// A client's longest frame, bytes: a request that moves every object of the scene. For the link's limit.
+/// A client's longest frame, bytes: a request that moves every object of the largest scene there can be, the
+/// daemon's own or one that is taken in. For the link's limit.
 [[nodiscard]] std::size_t largest_frame_of_a_client(std::uint32_t object_count) noexcept;
 
-/// The daemon between its link and its engine. One thread; `step` is the loop's body.
+/// The daemon between its link and its scenes' engines. One thread; `step` is the loop's body.
 ///
 /// A peer's bytes never throw. What leaves step() is a MachineError of the engine, which nobody can serve
 /// without.
 class Service {
  public:
-  Service(ServerLink& link, VisibilityEngine& engine, SceneIdentity scene, ServiceOptions options,
-          Clock clock);
+  /// `intake` may be null: then no scenes are taken over the wire. All must outlive this.
+  Service(ServerLink& link, SceneStore& scenes, SceneIntake* intake, ServiceOptions options, Clock clock);
 
   /// Reads what has come in, waiting for at most `timeout` when there is nothing to do, then answers the
   /// newest request of the session whose turn it is.
@@ -69,6 +65,7 @@ class Service {
   /// Returns whether nothing was left unread.
   bool drain(std::chrono::milliseconds timeout);
   void answer(Session& session);
+  void answer_request(Session& session, double began_s);
   [[nodiscard]] bool may_answer_now() const;
   [[nodiscard]] std::chrono::milliseconds wait_time(std::chrono::milliseconds timeout) const;
 
@@ -78,6 +75,9 @@ class Service {
   void handle(const PeerId& peer, Ping&& ping);
   void handle(const PeerId& peer, Pong&& pong);
   void handle(const PeerId& peer, Goodbye&& goodbye);
+  void handle(const PeerId& peer, Why&& question);
+  void handle(const PeerId& peer, SceneOffer&& offer);
+  void handle(const PeerId& peer, SceneChunk&& chunk);
   /// Messages that only a daemon sends.
   template <class DaemonMessage>
   void handle(const PeerId& peer, DaemonMessage&& message);
@@ -85,10 +85,13 @@ class Service {
   void refuse(const PeerId& peer, RefusalReason reason, const std::string& text);
   void refuse_malformed(const PeerId& peer, const std::string& why);
   void send(const PeerId& peer, const Message& message);
+  void step_intake();
+  [[nodiscard]] std::uint32_t most_objects() const noexcept;
+  [[nodiscard]] std::size_t largest_frame_without_session() const noexcept;
 
   ServerLink& link_;
-  VisibilityEngine& engine_;
-  SceneIdentity scene_;
+  SceneStore& scenes_;
+  SceneIntake* intake_;
   ServiceOptions options_;
   Clock clock_;
   SessionTable sessions_;

@@ -1,39 +1,46 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 
 #include "control_view/apply_moves.hpp"
-#include "control_view/sent_sets.hpp"
-#include "control_view/visibility_pipeline.hpp"
+#include "control_view/served_scene.hpp"
+#include "control_view/session_view.hpp"
+#include "control_view/why_queue.hpp"
 #include "protocol/endpoint_link.hpp"
 #include "protocol/messages.hpp"
 
 namespace sightline {
 
-/// A request that waits for its turn.
-struct PendingRequest {
-  ViewRequest request;
-  double received_s = 0.0;
-};
-
 /// Everything the daemon keeps for one client. Sessions share the scene and the engine and nothing else.
 class Session {
  public:
-  Session(std::uint64_t id, PeerId peer, std::string client_name, VisibilityPipeline pipeline, double now_s);
+  Session(std::uint64_t id, PeerId peer, std::string client_name, ServedScenePtr scene,
+          const PipelineOptions& options, Clock clock, double now_s);
+  ~Session();
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
 
-  /// Takes a request in: its moves are applied at once, and it replaces one that still waits. What must not
-  /// be lost with the one replaced (a reset of the filter) passes on. An object that jumps, appears or
-  /// vanishes resets the filter too where that could keep out what now shows. One that is older than the
-  /// newest heard of counts as superseded itself and changes nothing. Returns whether a request was
-  /// superseded.
+  /// Takes a request in: its moves and changes of presence are applied at once, for all views, and it
+  /// replaces one of its view that still waits. An object that jumps, appears or vanishes resets the filters
+  /// where they could keep out what now shows. Returns whether a request was superseded.
   bool accept(ViewRequest request, double now_s);
-  [[nodiscard]] bool has_pending() const noexcept { return pending_.has_value(); }
+  /// Takes in a question why; whether there was room for it, see WhyQueue.
+  bool ask(const Why& question, double now_s) { return questions_.add(question, now_s); }
+  [[nodiscard]] bool has_request() const noexcept;
+  [[nodiscard]] bool has_question() const noexcept { return !questions_.empty(); }
+  /// Whether either waits for the session's turn.
+  [[nodiscard]] bool has_pending() const noexcept { return has_question() || has_request(); }
 
-  /// Answers the pending request. Requires has_pending().
-  [[nodiscard]] VisibleSetFrame answer(VisibilityEngine& engine, const SceneDigest& digest, double now_s);
-  void note_encode_time(double encode_s) noexcept { last_encode_s_ = encode_s; }
+  /// Answers the request of the view that waits longest. Requires has_request().
+  [[nodiscard]] VisibleSetFrame answer(double now_s);
+  /// Answers the oldest question. Requires has_question(), and its object to be of the scene.
+  [[nodiscard]] WhyAnswer answer_why();
+  /// How long it took to write the last answer of that view.
+  void note_encode_time(std::uint8_t view, double encode_s) noexcept;
 
   void heard(double now_s) noexcept {
     last_heard_s_ = now_s;
@@ -46,18 +53,22 @@ class Session {
   [[nodiscard]] std::uint64_t id() const noexcept { return edits_.owner; }
   [[nodiscard]] const PeerId& peer() const noexcept { return peer_; }
   [[nodiscard]] const std::string& client_name() const noexcept { return client_name_; }
+  [[nodiscard]] ServedScene& scene() const noexcept { return *scene_; }
+  [[nodiscard]] const SceneEdits& edits() const noexcept { return edits_; }
+  /// Null for a view that nothing was asked of.
+  [[nodiscard]] const SessionView* view(std::uint8_t view) const noexcept { return views_[view].get(); }
 
  private:
   PeerId peer_;
   std::string client_name_;
-  VisibilityPipeline pipeline_;
+  ServedScenePtr scene_;
+  PipelineOptions options_;
+  Clock clock_;
   SceneEdits edits_;
-  SentSets sent_;
-  std::optional<PendingRequest> pending_;
-  std::uint64_t newest_request_seq_ = 0;
+  std::array<std::unique_ptr<SessionView>, k_max_views> views_;
+  WhyQueue questions_;
   double last_heard_s_ = 0.0;
   std::optional<double> missed_since_s_;  ///< when its silence was first found
-  double last_encode_s_ = 0.0;
 };
 
 }  // namespace sightline

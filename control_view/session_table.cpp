@@ -5,11 +5,12 @@
 
 namespace sightline {
 
-Session* SessionTable::open(const PeerId& peer, const std::string& client_name, VisibilityPipeline pipeline,
-                            double now_s) {
+Session* SessionTable::open(const PeerId& peer, const std::string& client_name, ServedScenePtr scene,
+                            const PipelineOptions& options, const Clock& clock, double now_s) {
   if (const Session* earlier = of_peer(peer)) close(*earlier);
   if (sessions_.size() >= capacity_) return nullptr;
-  sessions_.push_back(std::make_unique<Session>(fresh_id(), peer, client_name, std::move(pipeline), now_s));
+  sessions_.push_back(
+      std::make_unique<Session>(fresh_id(), peer, client_name, std::move(scene), options, clock, now_s));
   return sessions_.back().get();
 }
 

@@ -17,8 +17,8 @@ class SessionTable {
 
   /// Opens a session under a fresh random id, in the place of the peer's earlier one. Null when the table is
   /// full.
-  Session* open(const PeerId& peer, const std::string& client_name, VisibilityPipeline pipeline,
-                double now_s);
+  Session* open(const PeerId& peer, const std::string& client_name, ServedScenePtr scene,
+                const PipelineOptions& options, const Clock& clock, double now_s);
   /// The peer's session, or null.
   [[nodiscard]] Session* of_peer(const PeerId& peer) noexcept;
   void close(const Session& session);

@@ -122,7 +122,10 @@ TEST(ControlViewCli, RefusesBadInputWithOneLineAndCode2) {
   expect_refusal({"--scene", triangle_scene(folder), "--bind", "carrier-pigeon"}, 2, "carrier-pigeon");
   expect_refusal({"--scene", "/nowhere/city.glb", "--bind", "tcp://127.0.0.1:*"}, 2, "/nowhere/city.glb");
   expect_refusal({"--scene", scene, "--keys", "/nowhere/keys.toml"}, 2, "/nowhere/keys.toml");
-  expect_refusal({"--bind", "tcp://127.0.0.1:*"}, 2, "--scene");
+  expect_refusal({"--bind", "tcp://127.0.0.1:*", "--uploads", "off"}, 2, "--scene");
+  expect_refusal({"--scene", scene, "--uploads", "perhaps"}, 2, "--uploads");
+  expect_refusal({"--scene", scene, "--max-scene-mib", "4096"}, 2, "--max-scene-mib");
+  expect_refusal({"--scene", scene, "--max-objects", "0"}, 2, "--max-objects");
   expect_refusal({"--sceen", scene}, 2, "--sceen");
 }
 

@@ -46,6 +46,8 @@ class FakeEngine final : public VisibilityEngine {
     edits_ = edits;
   }
 
+  [[nodiscard]] const SceneEdits& edits() const noexcept { return edits_; }
+
   EngineStats count(const ViewQuery& query, PixelCounts& counts) override {
     ++count_calls;
     windows.push_back(query.window);

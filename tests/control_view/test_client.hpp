@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <map>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <variant>
@@ -23,7 +24,9 @@ inline constexpr double k_deadline_s = 10.0;
 /// A service over a fake engine, on loopback, with a clock that stands still unless turned.
 struct Daemon {
   explicit Daemon(ServiceOptions options = default_options())
-      : service(link, engine, {k_digest, k_object_count}, std::move(options), [this] { return now_s; }) {}
+      : scenes(served_scene({k_digest, k_object_count}, std::make_unique<FakeEngine>())),
+        engine(static_cast<FakeEngine&>(*scenes.own()->engine)),
+        service(link, scenes, nullptr, std::move(options), [this] { return now_s; }) {}
 
   static ServiceOptions default_options() {
     ServiceOptions options;
@@ -44,7 +47,8 @@ struct Daemon {
   }
 
   double now_s = 1000.0;
-  FakeEngine engine;
+  SceneStore scenes;
+  FakeEngine& engine;
   ServerLink link{"tcp://127.0.0.1:*"};
   Service service;
 };

@@ -1,0 +1,195 @@
+#include "control_view/scene_intake.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <new>
+#include <utility>
+
+#include "common/scene_digest.hpp"
+#include "protocol/scene_chunks.hpp"
+
+namespace sightline {
+namespace {
+
+/// Peers of one upload that are told what becomes of it; those beyond ask again by offering.
+constexpr std::size_t k_most_peers = 64;
+
+std::vector<std::uint8_t> bytes_of(const RoaringBitmap& bitmap) {
+  std::vector<std::uint8_t> bytes(bitmap.getSizeInBytes());
+  bitmap.write(reinterpret_cast<char*>(bytes.data()));
+  return bytes;
+}
+
+std::string limit_text(const char* what, std::uint64_t given, std::uint64_t most) {
+  return std::string("the scene has ") + std::to_string(given) + " " + what + ", this daemon takes at most " +
+         std::to_string(most);
+}
+
+}  // namespace
+
+SceneIntake::SceneIntake(SceneStore& scenes, const IntakeLimits& limits, SceneBuilder::MakeEngine make_engine)
+    : scenes_(scenes), limits_(limits), builder_(std::move(make_engine)) {}
+
+void SceneIntake::offer(const PeerId& peer, SceneOffer offer, double now_s) {
+  const SceneDigest digest = offer.scene_digest;
+  if (offer.version != k_protocol_version) {
+    tell(peer, state_of(digest, SceneState::failed,
+                        "this daemon speaks version " + std::to_string(k_protocol_version) + ", not " +
+                            std::to_string(offer.version)));
+    return;
+  }
+  if (const ServedScenePtr scene = scenes_.find(digest)) {
+    // As good as used: the client is about to open a session on it.
+    scene->last_used_s = now_s;
+    tell(peer, state_of(digest, SceneState::ready));
+    return;
+  }
+  auto known = uploads_.find(digest);
+  if (known == uploads_.end()) {
+    if (std::string why = why_not(offer, now_s); !why.empty()) {
+      tell(peer, state_of(digest, SceneState::failed, std::move(why)));
+      return;
+    }
+    Upload upload;
+    upload.scene.bytes.reset(new (std::nothrow) std::uint8_t[offer.byte_count]);
+    if (upload.scene.bytes == nullptr) {
+      tell(peer, state_of(digest, SceneState::failed, "no memory is left for the scene"));
+      return;
+    }
+    upload.scene.byte_count = offer.byte_count;
+    upload.sent_by.resize(offer.chunk_digests.size());
+    upload.offer = std::move(offer);
+    known = uploads_.emplace(digest, std::move(upload)).first;
+  }
+  Upload& upload = known->second;
+  upload.heard_s = now_s;
+  if (upload.peers.size() < k_most_peers) upload.peers.insert(peer);
+  tell(peer, status_of(upload, true));
+}
+
+std::string SceneIntake::why_not(const SceneOffer& offer, double now_s) {
+  if (offer.byte_count > limits_.scene_bytes)
+    return limit_text("bytes", offer.byte_count, limits_.scene_bytes);
+  if (offer.object_count > limits_.objects) return limit_text("objects", offer.object_count, limits_.objects);
+  if (offer.triangle_count > limits_.triangles)
+    return limit_text("triangles", offer.triangle_count, limits_.triangles);
+  if (scene_digest_of(offer) != offer.scene_digest) return "scene_digest: not that of the offer";
+  std::uint64_t bytes = offer.byte_count;
+  for (const auto& [digest, upload] : uploads_) bytes += upload.offer.byte_count;
+  if (!scenes_.make_room(uploads_.size() + 1, bytes, limits_.scenes, limits_.all_bytes, now_s)) {
+    return "this daemon is full: it holds at most " + std::to_string(limits_.scenes) + " scenes and " +
+           std::to_string(limits_.all_bytes) + " bytes of them; try again when others have gone";
+  }
+  return {};
+}
+
+void SceneIntake::take(const PeerId& peer, const SceneChunk& chunk, double now_s) {
+  const auto known = uploads_.find(chunk.scene_digest);
+  if (known == uploads_.end()) {
+    // The last chunks of an upload that somebody else has finished meanwhile, most likely.
+    const bool ready = scenes_.find(chunk.scene_digest) != nullptr;
+    tell(peer, ready ? state_of(chunk.scene_digest, SceneState::ready)
+                     : state_of(chunk.scene_digest, SceneState::failed, "a chunk of no offer: offer first"));
+    return;
+  }
+  Upload& upload = known->second;
+  if (upload.building || upload.liars.contains(peer)) return;
+  const bool is_chunk =
+      chunk.index < upload.offer.chunk_digests.size() &&
+      chunk.bytes.size() == chunk_of({upload.scene.bytes.get(), upload.scene.byte_count}, chunk.index).size();
+  if (!is_chunk) {
+    tell(peer, state_of(chunk.scene_digest, SceneState::failed,
+                        "chunk " + std::to_string(chunk.index) + " is not as long as the offer says"));
+    return;
+  }
+  upload.heard_s = now_s;
+  if (upload.held.contains(chunk.index)) return;
+  std::memcpy(upload.scene.bytes.get() + std::size_t{chunk.index} * k_scene_chunk_bytes, chunk.bytes.data(),
+              chunk.bytes.size());
+  upload.held.add(chunk.index);
+  if (upload.peers.contains(peer) || upload.peers.size() < k_most_peers)
+    upload.sent_by[chunk.index] = &*upload.peers.insert(peer).first;
+  if (upload.held.cardinality() == upload.offer.chunk_digests.size()) {
+    begin_building(upload);
+  } else if (upload.held.cardinality() % k_chunks_a_status == 0) {
+    tell(peer, status_of(upload, false));
+  }
+}
+
+void SceneIntake::begin_building(Upload& upload) {
+  upload.building = true;
+  ++building_;
+  builder_.build(upload.offer, std::move(upload.scene));
+  tell_all(upload, status_of(upload, false));
+}
+
+void SceneIntake::step(double now_s) {
+  while (std::optional<BuiltScene> built = builder_.take()) finish(*std::move(built), now_s);
+  std::erase_if(uploads_, [&](const auto& entry) {
+    return !entry.second.building && now_s - entry.second.heard_s > k_idle_s;
+  });
+}
+
+void SceneIntake::finish(BuiltScene built, double now_s) {
+  --building_;
+  const auto known = uploads_.find(built.digest);
+  Upload& upload = known->second;
+  if (const auto* wrong = std::get_if<std::vector<std::uint32_t>>(&built.result)) {
+    upload.building = false;
+    upload.scene = std::move(built.bytes);
+    upload.heard_s = now_s;
+    for (const std::uint32_t index : *wrong) {
+      upload.held.remove(index);
+      const PeerId* sender = upload.sent_by[index];
+      if (sender == nullptr || !upload.liars.insert(*sender).second) continue;
+      tell(*sender, state_of(built.digest, SceneState::failed,
+                             "chunk " + std::to_string(index) + " has not the digest that the offer says"));
+    }
+    for (const PeerId& peer : upload.peers) {
+      if (!upload.liars.contains(peer)) tell(peer, status_of(upload, true));
+    }
+    return;
+  }
+  if (auto* scene = std::get_if<ServedScenePtr>(&built.result)) {
+    (*scene)->last_used_s = now_s;
+    tell_all(upload, state_of(built.digest, SceneState::ready));
+    scenes_.add(std::move(*scene));
+  } else {
+    tell_all(upload, state_of(built.digest, SceneState::failed, std::get<std::string>(built.result)));
+  }
+  uploads_.erase(known);
+}
+
+SceneStatus SceneIntake::status_of(const Upload& upload, bool with_held) {
+  SceneStatus status;
+  status.scene_digest = upload.offer.scene_digest;
+  status.state = upload.building ? SceneState::building : SceneState::uploading;
+  status.chunk_count = static_cast<std::uint32_t>(upload.offer.chunk_digests.size());
+  status.chunks_held = static_cast<std::uint32_t>(upload.held.cardinality());
+  if (with_held) status.held = bytes_of(upload.held);
+  return status;
+}
+
+SceneStatus SceneIntake::state_of(const SceneDigest& digest, SceneState state, std::string text) {
+  SceneStatus status;
+  status.scene_digest = digest;
+  status.state = state;
+  status.text = std::move(text);
+  return status;
+}
+
+void SceneIntake::tell(const PeerId& peer, SceneStatus status) {
+  notices_.push_back({peer, std::move(status)});
+}
+
+void SceneIntake::tell_all(const Upload& upload, const SceneStatus& status) {
+  for (const PeerId& peer : upload.peers) {
+    if (!upload.liars.contains(peer)) tell(peer, status);
+  }
+}
+
+std::vector<SceneIntake::Notice> SceneIntake::take_notices() {
+  return std::exchange(notices_, {});
+}
+
+}  // namespace sightline

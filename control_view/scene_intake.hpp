@@ -1,0 +1,83 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "control_view/scene_builder.hpp"
+#include "control_view/scene_store.hpp"
+#include "protocol/endpoint_link.hpp"
+#include "protocol/messages.hpp"
+#include "protocol/visible_set.hpp"
+
+namespace sightline {
+
+/// How much clients may bring.
+struct IntakeLimits {
+  std::uint64_t scene_bytes = 512ull << 20;  ///< of one scene, as it crosses the wire
+  std::uint64_t all_bytes = 2ull << 30;      ///< of all scenes and uploads together
+  std::uint32_t scenes = 16;                 ///< scenes and uploads together
+  std::uint32_t objects = 1u << 18;          ///< of one scene
+  std::uint64_t triangles = 1ull << 26;      ///< of one scene, shared meshes counted for each object
+};
+
+/// Scenes on their way in: offers, chunks, and what becomes of them. An upload belongs to its digest, not to
+/// a peer, so it goes on where it was after a client has reconnected.
+class SceneIntake {
+ public:
+  /// An upload nobody sends to is forgotten after this long, seconds.
+  static constexpr double k_idle_s = 60.0;
+  /// A status for every so many chunks.
+  static constexpr std::uint32_t k_chunks_a_status = 16;
+
+  /// `scenes` must outlive this; finished scenes go there.
+  SceneIntake(SceneStore& scenes, const IntakeLimits& limits, SceneBuilder::MakeEngine make_engine);
+
+  void offer(const PeerId& peer, SceneOffer offer, double now_s);
+  void take(const PeerId& peer, const SceneChunk& chunk, double now_s);
+  /// Hands what was built to the store and forgets idle uploads.
+  void step(double now_s);
+
+  struct Notice {
+    PeerId peer;
+    SceneStatus status;
+  };
+  /// What is to be sent since the last call.
+  [[nodiscard]] std::vector<Notice> take_notices();
+  /// Whether an engine is being made, so that step() is worth calling soon.
+  [[nodiscard]] bool is_building() const noexcept { return building_ > 0; }
+  [[nodiscard]] const IntakeLimits& limits() const noexcept { return limits_; }
+
+ private:
+  struct Upload {
+    SceneOffer offer;
+    SceneBytes scene;
+    RoaringBitmap held;
+    std::vector<const PeerId*> sent_by;  ///< by chunk, into `peers`
+    std::set<PeerId> peers;              ///< who offered or sent, and is told
+    std::set<PeerId> liars;              ///< whose chunks were wrong
+    bool building = false;
+    double heard_s = 0.0;
+  };
+
+  [[nodiscard]] std::string why_not(const SceneOffer& offer, double now_s);
+  [[nodiscard]] static SceneStatus status_of(const Upload& upload, bool with_held);
+  [[nodiscard]] static SceneStatus state_of(const SceneDigest& digest, SceneState state,
+                                            std::string text = {});
+  void tell(const PeerId& peer, SceneStatus status);
+  void tell_all(const Upload& upload, const SceneStatus& status);
+  void begin_building(Upload& upload);
+  void finish(BuiltScene built, double now_s);
+
+  SceneStore& scenes_;
+  IntakeLimits limits_;
+  std::map<SceneDigest, Upload> uploads_;
+  std::vector<Notice> notices_;
+  std::size_t building_ = 0;
+  SceneBuilder builder_;  ///< last: its thread ends first
+};
+
+}  // namespace sightline
