@@ -67,7 +67,8 @@ bool is_upright_perspective(const glm::dmat4& clip_from_camera) noexcept {
   const glm::dmat4& m = clip_from_camera;
   const bool perspective = m[0][3] == 0.0 && m[1][3] == 0.0 && m[2][3] == -1.0 && m[3][3] == 0.0;
   const bool upright = m[1][0] == 0.0 && m[0][1] == 0.0 && m[3][0] == 0.0 && m[3][1] == 0.0;
-  return perspective && upright && m[0][0] > 0.0 && m[1][1] > 0.0;
+  const bool near_is_upright = m[0][2] == 0.0 && m[1][2] == 0.0;  // a mirror's may be the mirror itself
+  return perspective && upright && near_is_upright && m[0][0] > 0.0 && m[1][1] > 0.0;
 }
 
 std::optional<ImageSize> parse_image_size(std::string_view text) {

@@ -59,8 +59,8 @@ struct Perspective {
 /// corners come closer and its far corners go further along the unturned axis.
 [[nodiscard]] glm::dmat4 widened(const glm::dmat4& clip_from_camera, double angle_rad) noexcept;
 
-/// Whether a projection is a perspective whose axes are not mixed (bottom row 0 0 -1 0, no skew): the form
-/// that what follows knows.
+/// Whether a projection is a perspective whose axes are not mixed (bottom row 0 0 -1 0, no skew, near plane
+/// across the view's axis): the form that what follows knows.
 [[nodiscard]] bool is_upright_perspective(const glm::dmat4& clip_from_camera) noexcept;
 
 /// Moves the near plane of a perspective projection to `near_m`, where that is farther and before the far

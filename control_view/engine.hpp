@@ -13,6 +13,7 @@
 #include "common/object_id.hpp"
 #include "common/scene/scene.hpp"
 #include "common/view.hpp"
+#include "control_view/explanation.hpp"
 #include "protocol/messages.hpp"
 
 namespace sightline {
@@ -94,7 +95,13 @@ struct SceneEdits {
   std::uint64_t version = 0;
   std::vector<ObjectMove> moves;   ///< one an object at most, ascending ids
   std::vector<ObjectId> hidden{};  ///< not there: never drawn, never reported; ascending
+  std::uint32_t view = 0;          ///< of the session's views, the one that looks
 };
+
+/// Who looks, as one number: what an engine remembers of the last look is by that.
+[[nodiscard]] inline std::uint64_t viewer_of(const SceneEdits& edits) noexcept {
+  return edits.owner + edits.view * 0x9e3779b97f4a7c15u;
+}
 
 /// Turns (scene state, eyes, resolution) into a count of visible pixels per object.
 /// Not thread-safe: it lives on the thread that made it, with that thread's GL context.
@@ -105,6 +112,10 @@ class VisibilityEngine {
   virtual void apply(const SceneEdits& edits) = 0;
   /// Replaces `counts`. Throws MachineError when the GL context is lost.
   virtual EngineStats count(const ViewQuery& query, PixelCounts& counts) = 0;
+  /// Why the view shows an object or does not. Changes nothing that later counts depend on, and costs about
+  /// as much as one. `window` and `doubt` of the query are not looked at; `id` must be of the scene. An
+  /// engine that cannot say leaves `known` false. Throws as count does.
+  [[nodiscard]] virtual Explanation explain(const ViewQuery& /*query*/, ObjectId /*id*/) { return {}; }
 };
 
 struct EngineOptions {

@@ -46,6 +46,14 @@ void LowPassFilter::extents_of(std::span<const ObjectId> ids, const glm::dvec3& 
   }
 }
 
+std::uint32_t LowPassFilter::newest_pixels_of(ObjectId id) const noexcept {
+  if (answer_count_ == 0) return 0;
+  const PixelCounts& counts = answers_[(next_ + answers_.size() - 1) % answers_.size()].counts;
+  const auto at = std::lower_bound(counts.ids.begin(), counts.ids.end(), id);
+  if (at == counts.ids.end() || *at != id) return 0;
+  return counts.pixels[static_cast<std::size_t>(at - counts.ids.begin())];
+}
+
 MeanPixels LowPassFilter::means() const noexcept {
   return {sums_.ids(), sums_.sums(), answer_count_ == 0 ? 1.0 : 1.0 / answer_count_};
 }

@@ -37,6 +37,8 @@ class LowPassFilter {
   /// without saying where.
   void extents_of(std::span<const ObjectId> ids, const glm::dvec3& eye_m,
                   std::vector<DirectionExtent>& extents) const;
+  /// In the newest answer held; 0 where that did not see it.
+  [[nodiscard]] std::uint32_t newest_pixels_of(ObjectId id) const noexcept;
   [[nodiscard]] std::uint32_t answer_count() const noexcept { return answer_count_; }
 
  private:

@@ -4,6 +4,12 @@
 
 namespace sightline {
 
+double mean_of(const MeanPixels& means, ObjectId id) noexcept {
+  const auto at = std::lower_bound(means.ids.begin(), means.ids.end(), id);
+  if (at == means.ids.end() || *at != id) return 0.0;
+  return means.mean(static_cast<std::size_t>(at - means.ids.begin()));
+}
+
 void PixelSums::add(const PixelCounts& counts) {
   scratch_ids_.resize(ids_.size() + counts.ids.size());
   scratch_sums_.resize(scratch_ids_.size());

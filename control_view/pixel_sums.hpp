@@ -20,6 +20,9 @@ struct MeanPixels {
   }
 };
 
+/// 0 for an object that has none.
+[[nodiscard]] double mean_of(const MeanPixels& means, ObjectId id) noexcept;
+
 /// Pixel counts added up, sparse. The cost of every call follows the objects held and handed in, never those
 /// that exist; memory is allocated only while the arrays still grow.
 class PixelSums {

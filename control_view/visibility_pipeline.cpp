@@ -31,6 +31,18 @@ constexpr double k_widest = 2.0;
 // Steps in which an image grows, so that its size does not change with every request.
 constexpr double k_steps = 8.0;
 
+/// How much wider a view has to be looked at for samples all round its edge: the outermost ones lie half a
+/// pixel inside, and those of a finer image farther out.
+double pixel_rad(const glm::dmat4& clip_from_camera, ImageSize size) {
+  const double half_field_rad = std::atan(1.0 / std::abs(clip_from_camera[1][1]));
+  return 2.0 * half_field_rad / std::max(size.height, 1u);
+}
+
+/// Of an upright perspective, along the view's axis.
+double near_plane_m(const glm::dmat4& clip_from_camera) noexcept {
+  return clip_from_camera[3][2] / (clip_from_camera[2][2] - 1.0);
+}
+
 /// As many pixels a degree as an image of `size` has of the eyes' own fields, for the widened ones.
 ImageSize widened_size(ImageSize size, std::span<const Eye> eyes, std::span<const Eye> widened_eyes) {
   double across = 1.0, up = 1.0;
@@ -80,6 +92,7 @@ Look VisibilityPipeline::look(const ViewRequest& request, const SceneEdits& edit
   const auto next =
       options_.refine && boxed_.empty() ? refiner_.next_look(error_rad) : StillViewRefiner::Look::whole_view;
   if (next == StillViewRefiner::Look::whole_view) count_whole_view(request, engine, look);
+  answered_seq_ = request.request_seq;
   if (next == StillViewRefiner::Look::tile) count_tile(request, engine, look);
 
   const double filter_began_s = clock_();
@@ -88,7 +101,8 @@ Look VisibilityPipeline::look(const ViewRequest& request, const SceneEdits& edit
     if (options_.refine) refiner_.add_whole_view(counts_, error_rad);
   }
   if (next == StillViewRefiner::Look::tile) refiner_.add_tile(counts_);
-  look.visible = visible_now(error_rad > 0.0);
+  guard_band_ = error_rad > 0.0;
+  look.visible = visible_now(guard_band_);
   // A boxed object counts one pixel however large it is: no threshold is for it.
   if (!boxed_.empty()) {
     scratch_.clear();
@@ -97,32 +111,40 @@ Look VisibilityPipeline::look(const ViewRequest& request, const SceneEdits& edit
     look.visible.unite(VisibleSet(scratch_));
   }
   if (options_.extents) say_where(request, look.visible);
-  if (next == StillViewRefiner::Look::whole_view && !counts_.open.ids.empty()) add_open(look.visible);
+  added_open_ = next == StillViewRefiner::Look::whole_view && !counts_.open.ids.empty();
+  if (added_open_) add_open(look.visible);
   look.times.filter_s = clock_() - filter_began_s;
   return look;
 }
 
 void VisibilityPipeline::count_whole_view(const ViewRequest& request, VisibilityEngine& engine, Look& look) {
   const double error_rad = rotation_error_of(request);
+  const bool is_the_main_image =
+      error_rad == 0.0 && request.position_error_m == 0.0 && options_.size == request.main_size;
+  const bool in_doubt = options_.sample_px && !is_the_main_image;
   widened_eyes_.assign(request.eyes.begin(), request.eyes.end());
-  if (error_rad > 0.0) {
-    for (Eye& eye : widened_eyes_) {
-      const glm::dmat4 projection = eye.clip_from_camera;
+  for (Eye& eye : widened_eyes_) {
+    const glm::dmat4 projection = eye.clip_from_camera;
+    if (error_rad > 0.0) {
       eye.clip_from_camera = widened(projection, error_rad);
       // What the client's near plane may cut away hides nothing. The client draws whatever comes that near.
       if (options_.sample_px) move_near_plane(eye.clip_from_camera, near_reach_m(projection));
+    } else if (in_doubt) {
+      eye.clip_from_camera = widened(projection, pixel_rad(projection, options_.size));
+      // The view is known: nothing nearer than its own near plane hides anything.
+      if (is_upright_perspective(projection)) move_near_plane(eye.clip_from_camera, near_plane_m(projection));
     }
   }
   ViewQuery query;
   query.eyes = widened_eyes_;
-  query.size = options_.extents ? widened_size(options_.size, request.eyes, widened_eyes_) : options_.size;
+  query.size = options_.extents && error_rad > 0.0 ? widened_size(options_.size, request.eyes, widened_eyes_)
+                                                   : options_.size;
   query.boxed = request.boxed;
-  const bool is_the_main_image =
-      error_rad == 0.0 && request.position_error_m == 0.0 && query.size == request.main_size;
-  if (options_.sample_px && !is_the_main_image) {
+  if (in_doubt) {
     query.doubt = {options_.region_share * request.position_error_m, *options_.sample_px,
                    error_rad > 0.0 ? near_reach_of(request) : 0.0};
   }
+  looked_size_ = query.size;
   count(query, engine, look);
 }
 
@@ -193,6 +215,38 @@ VisibleSet VisibilityPipeline::visible_now(bool guard_band) {
   VisibleSet visible = visible_above(refiner_.seen_in_tiles(), threshold, scratch_);
   if (guard_band) visible.unite(visible_above(refiner_.seen_in_whole_view(), threshold, scratch_));
   return visible;
+}
+
+LookedAt VisibilityPipeline::looked_at() const noexcept {
+  return {answered_seq_, widened_eyes_, looked_size_};
+}
+
+ObjectStanding VisibilityPipeline::standing_of(ObjectId id) const {
+  ObjectStanding standing;
+  standing.threshold = options_.threshold_pixels;
+  const auto is_above = [&](double mean) { return mean > std::max(standing.threshold, 0.0); };
+  const double in_tiles = mean_of(refiner_.seen_in_tiles(), id);
+  standing.pixels_mean = mean_of(filter_.means(), id);
+  standing.pixels = filter_.newest_pixels_of(id);
+  if (standing.pixels == 0 && in_tiles > 0.0) {
+    standing.pixels = static_cast<std::uint32_t>(std::max(1.0, std::round(in_tiles)));
+  }
+  const auto has = [id](const std::vector<ObjectId>& ids) {
+    return std::binary_search(ids.begin(), ids.end(), id);
+  };
+  if (has(boxed_) && has(counts_.ids)) {
+    standing.state = WhyState::boxed;
+  } else if (refiner_.complete()) {
+    const double in_whole_view = guard_band_ ? mean_of(refiner_.seen_in_whole_view(), id) : 0.0;
+    if (is_above(in_tiles) || is_above(in_whole_view)) standing.state = WhyState::visible;
+  } else if (in_tiles > 0.0 || (standing.pixels > 0 && is_above(standing.pixels_mean))) {
+    standing.state = WhyState::visible;
+  } else if (is_above(standing.pixels_mean)) {
+    standing.state = WhyState::held_by_filter;
+  }
+  if (!standing.state && added_open_ && has(counts_.open.ids)) standing.state = WhyState::open;
+  if (!standing.state && standing.pixels > 0) standing.state = WhyState::below_threshold;
+  return standing;
 }
 
 }  // namespace sightline

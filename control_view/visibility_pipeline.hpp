@@ -6,6 +6,7 @@
 #include "control_view/clock.hpp"
 #include "control_view/engine.hpp"
 #include "control_view/low_pass_filter.hpp"
+#include "control_view/object_standing.hpp"
 #include "control_view/still_view_refiner.hpp"
 #include "protocol/messages.hpp"
 #include "protocol/visible_set.hpp"
@@ -51,6 +52,11 @@ class VisibilityPipeline {
   /// Throws what the engine throws.
   [[nodiscard]] Look look(const ViewRequest& request, const SceneEdits& edits, VisibilityEngine& engine);
 
+  /// The newest look at the whole view. Its eyes are valid until the next look.
+  [[nodiscard]] LookedAt looked_at() const noexcept;
+  /// Why an object is in the newest set; nothing about one that is not, but for too few pixels.
+  [[nodiscard]] ObjectStanding standing_of(ObjectId id) const;
+
  private:
   void count_whole_view(const ViewRequest& request, VisibilityEngine& engine, Look& look);
   void count_tile(const ViewRequest& request, VisibilityEngine& engine, Look& look);
@@ -66,8 +72,12 @@ class VisibilityPipeline {
   Clock clock_;
   LowPassFilter filter_;
   StillViewRefiner refiner_;
-  std::vector<Eye> widened_eyes_;
-  std::vector<ObjectId> boxed_;  ///< of the last request
+  std::vector<Eye> widened_eyes_;  ///< of the last whole look, as is the next
+  ImageSize looked_size_;
+  std::uint64_t answered_seq_ = 0;  ///< newest request answered, 0: none yet
+  bool added_open_ = false;         ///< the newest set holds counts_.open
+  bool guard_band_ = false;         ///< the newest set holds the last whole view
+  std::vector<ObjectId> boxed_;     ///< of the last request
   PixelCounts counts_;
   std::optional<glm::dvec3> last_eye_m_;  ///< of the last request
   std::vector<ObjectId> scratch_;

@@ -9,6 +9,7 @@
 #include "common/object_hierarchy.hpp"
 #include "control_view/engines/boxed_objects.hpp"
 #include "control_view/engines/depth_hierarchy.hpp"
+#include "control_view/engines/explain_item_buffer.hpp"
 #include "control_view/engines/item_buffer_engine.hpp"
 #include "control_view/engines/item_buffer_pair.hpp"
 #include "control_view/engines/moved_objects.hpp"
@@ -49,6 +50,10 @@ class ItemBufferAllEngine final : public VisibilityEngine {
     sum_.take(counts);
     stats.count_s += watch.lap_s();
     return stats;
+  }
+
+  Explanation explain(const ViewQuery& query, ObjectId id) override {
+    return explainer_.explain(gpu_scene_, hierarchy_, query, id);
   }
 
  private:
@@ -103,6 +108,7 @@ class ItemBufferAllEngine final : public VisibilityEngine {
   CountAccumulator sum_;
   std::vector<bool> blended_;
   ItemBufferPair buffers_{gl::Stencil::with};
+  ItemBufferExplainer explainer_;
   std::vector<ObjectId> in_frustum_, blended_in_frustum_;
   std::vector<float> depth_;
   DepthHierarchy depth_hierarchy_;

@@ -10,6 +10,7 @@
 #include "control_view/engines/boxed_objects.hpp"
 #include "control_view/engines/depth_hierarchy.hpp"
 #include "control_view/engines/detail_test.hpp"
+#include "control_view/engines/explain_item_buffer.hpp"
 #include "control_view/engines/item_buffer_pair.hpp"
 #include "control_view/engines/last_seen.hpp"
 #include "control_view/engines/merge_passes.hpp"
@@ -52,7 +53,7 @@ class ItemBufferEngine final : public VisibilityEngine {
   }
 
   void apply(const SceneEdits& edits) override {
-    owner_ = edits.owner;
+    viewer_ = viewer_of(edits);
     const MovedObjects::Change& change = moved_.turn_to(edits);
     if (change.ids.empty()) return;
     gpu_scene_.set_transforms(change.ids, change.scene_from_object);
@@ -77,6 +78,10 @@ class ItemBufferEngine final : public VisibilityEngine {
     sum_.take(counts);
     stats.count_s += watch.lap_s();
     return stats;
+  }
+
+  Explanation explain(const ViewQuery& query, ObjectId id) override {
+    return explainer_.explain(gpu_scene_, hierarchy_, query, id);
   }
 
  private:
@@ -140,9 +145,9 @@ class ItemBufferEngine final : public VisibilityEngine {
 
   /// What the eye saw last and still may, or what is nearest where it saw nothing. Ascending.
   void choose_first(const Frame& frame) {
-    const std::vector<ObjectId>* seen = &visible_last_.of(owner_, frame.eye_index);
+    const std::vector<ObjectId>* seen = &visible_last_.of(viewer_, frame.eye_index);
     // A second eye that is new starts from the first's.
-    if (seen->empty() && frame.eye_index > 0) seen = &visible_last_.of(owner_, frame.eye_index - 1);
+    if (seen->empty() && frame.eye_index > 0) seen = &visible_last_.of(viewer_, frame.eye_index - 1);
     drawn_.clear();
     std::copy_if(seen->begin(), seen->end(), std::back_inserter(drawn_), [&](ObjectId id) {
       return !is_boxed(id) && frame.projector.project(hierarchy_.bounds_of(id)).has_value();
@@ -251,7 +256,7 @@ class ItemBufferEngine final : public VisibilityEngine {
   }
 
   void remember(const Frame& frame) {
-    std::vector<ObjectId>& seen = visible_last_.of(owner_, frame.eye_index);
+    std::vector<ObjectId>& seen = visible_last_.of(viewer_, frame.eye_index);
     if (!frame.window) {
       seen.assign(eye_counts_.ids.begin(), eye_counts_.ids.end());
       return;
@@ -278,8 +283,9 @@ class ItemBufferEngine final : public VisibilityEngine {
   CountAccumulator sum_, eye_sum_;
   PixelCounts eye_counts_;
   ItemBufferPair buffers_{gl::Stencil::with};
+  ItemBufferExplainer explainer_;
   LastSeen<ObjectId> visible_last_;
-  std::uint64_t owner_ = 0;
+  std::uint64_t viewer_ = 0;
 
   std::vector<std::uint8_t> has_opaque_, has_blended_;
   std::vector<std::uint64_t> drawn_in_;  ///< per object: the stamp of the frame that drew it last

@@ -7,19 +7,19 @@
 
 namespace sightline {
 
-/// What each eye of each session saw last, as an engine's items (objects, parts of objects). A hint: whatever
-/// it says, the answer stays exact. Bounded: of more eyes than k_max_eyes the one asked about longest ago is
-/// forgotten.
+/// What each eye of each viewer (see viewer_of) saw last, as an engine's items (objects, parts of objects). A
+/// hint: whatever it says, the answer stays exact. Bounded: of more eyes than k_max_eyes the one asked about
+/// longest ago is forgotten.
 template <class Item>
 class LastSeen {
  public:
-  static constexpr std::size_t k_max_eyes = 64;
+  static constexpr std::size_t k_max_eyes = 256;
 
   /// The items of one eye, to read and to replace; empty for one not seen before. Valid until the next call.
-  [[nodiscard]] std::vector<Item>& of(std::uint64_t owner, std::size_t eye) {
+  [[nodiscard]] std::vector<Item>& of(std::uint64_t viewer, std::size_t eye) {
     ++uses_;
     auto entry = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& candidate) {
-      return candidate.owner == owner && candidate.eye == eye;
+      return candidate.viewer == viewer && candidate.eye == eye;
     });
     if (entry == entries_.end()) {
       if (entries_.size() < k_max_eyes) {
@@ -29,7 +29,7 @@ class LastSeen {
                                  [](const Entry& a, const Entry& b) { return a.last_use < b.last_use; });
         entry->items.clear();
       }
-      entry->owner = owner;
+      entry->viewer = viewer;
       entry->eye = eye;
     }
     entry->last_use = uses_;
@@ -38,7 +38,7 @@ class LastSeen {
 
  private:
   struct Entry {
-    std::uint64_t owner = 0;
+    std::uint64_t viewer = 0;
     std::size_t eye = 0;
     std::uint64_t last_use = 0;
     std::vector<Item> items;

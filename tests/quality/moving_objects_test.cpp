@@ -350,11 +350,12 @@ TEST(MovingObjects, AreRightForBothEyesAndAtOtherRates) {
 TEST(MovingObjects, LeaveOneSceneEditsToEachSession) {
   const House house;
   const WorldSetup setup = world_setup("item_buffer", 0.0);
+  const ServedScenePtr scene = served_scene({house.scene.digest, house.scene.object_count()},
+                                            make_engine(house.scene, EngineOptions{}));
   const auto session = [&](std::uint64_t id) {
-    return Session(id, PeerId{}, "client", VisibilityPipeline(setup.pipeline, [] { return 0.0; }), 0.0);
+    return Session(
+        id, PeerId{}, "client", scene, setup.pipeline, [] { return 0.0; }, 0.0);
   };
-  EngineOptions options;
-  const auto engine = make_engine(house.scene, options);
   Session busy = session(1), still = session(2);
   const Eye eye{camera_from_world(standing(0.0)), clip_from_camera(Perspective{}, 4.0 / 3.0)};
   const auto ask = [&](Session& of, std::uint64_t seq, bool with_movers) {
@@ -372,7 +373,7 @@ TEST(MovingObjects, LeaveOneSceneEditsToEachSession) {
       }
     }
     of.accept(std::move(request), 0.0);
-    return of.answer(*engine, house.scene.digest, 0.0).bitmap;
+    return of.answer(0.0).bitmap;
   };
   std::vector<std::vector<std::uint8_t>> alone;
   for (std::uint64_t seq = 1; seq <= 9; ++seq) alone.push_back(ask(still, seq, false));

@@ -26,9 +26,9 @@ std::vector<RigEye> rig_of(const WorldSetup& setup) {
           {glm::translate(glm::dmat4(1.0), -half), projection}};
 }
 
-std::unique_ptr<Session> new_session(std::uint64_t id, const WorldSetup& setup) {
-  return std::make_unique<Session>(id, PeerId{}, "virtual client",
-                                   VisibilityPipeline(setup.pipeline, [] { return 0.0; }), 0.0);
+std::unique_ptr<Session> new_session(std::uint64_t id, const ServedScenePtr& scene, const WorldSetup& setup) {
+  return std::make_unique<Session>(
+      id, PeerId{}, "virtual client", scene, setup.pipeline, [] { return 0.0; }, 0.0);
 }
 
 }  // namespace
@@ -55,14 +55,14 @@ MovingWorld::MovingWorld(const Scene& scene, const std::vector<Actor>& actors, c
     : scene_(scene),
       actors_(actors),
       setup_(setup),
-      engine_(engine_of(scene, setup.engine)),
+      served_(served_scene({scene.digest, scene.object_count()}, engine_of(scene, setup.engine))),
       judge_(engine_of(scene, "raster")),
       hierarchy_(scene.object_bounds),
       draw_list_(hierarchy_, scene.world_origin_m),
       core_(setup.culling, rig_of(setup)),
       daemon_([this](const ViewRequest& request) { return ask(request); }, setup.control_rate_hz,
               setup.latency_s) {
-  session_ = new_session(++session_id_, setup_);
+  session_ = new_session(++session_id_, served_, setup_);
   const glm::dmat4 world_from_scene = glm::translate(glm::dmat4(1.0), scene.world_origin_m);
   std::vector<MovedObject> declared;
   for (const Actor& actor : actors) {
@@ -79,7 +79,7 @@ MovedObject MovingWorld::moved(ObjectId id, const glm::dmat4& placement) const {
 }
 
 void MovingWorld::lose_the_daemon() {
-  session_ = new_session(++session_id_, setup_);
+  session_ = new_session(++session_id_, served_, setup_);
   sets_.clear();
   core_.forget_sets();
 }
@@ -89,7 +89,7 @@ Answer MovingWorld::ask(const ViewRequest& issued) {
   request.session_id = session_id_;
   request.acked_set_seq = sets_.acked_seq();
   session_->accept(request, 0.0);
-  VisibleSetFrame frame = session_->answer(*engine_, scene_.digest, 0.0);
+  VisibleSetFrame frame = session_->answer(0.0);
   std::optional<VisibleSet> set = sets_.decode(frame, scene_.object_count());
   if (!set) throw std::logic_error("the daemon's answer does not decode");
   Answer answer;

@@ -70,7 +70,8 @@ class MovingWorld {
   const Scene& scene_;
   const std::vector<Actor>& actors_;
   WorldSetup setup_;
-  std::unique_ptr<VisibilityEngine> engine_, judge_;
+  ServedScenePtr served_;
+  std::unique_ptr<VisibilityEngine> judge_;
   std::unique_ptr<Session> session_;
   SessionSets sets_;
   std::uint64_t session_id_ = 0;

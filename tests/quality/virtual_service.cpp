@@ -57,10 +57,11 @@ ServiceSetup avango_setup(double latency_s) {
 VirtualService::VirtualService(const Scene& scene, const ServiceSetup& setup)
     : scene_(scene),
       setup_(setup),
-      engine_(one_threaded_raster(scene)),
       judge_(one_threaded_raster(scene)),
-      session_(k_session_id, PeerId{}, "virtual client",
-               VisibilityPipeline(setup.pipeline, [] { return 0.0; }), 0.0),
+      session_(
+          k_session_id, PeerId{}, "virtual client",
+          served_scene({scene.digest, scene.object_count()}, one_threaded_raster(scene)), setup.pipeline,
+          [] { return 0.0; }, 0.0),
       hierarchy_(scene.object_bounds),
       draw_list_(hierarchy_, scene.world_origin_m),
       core_(setup.culling, rig_of(setup)),
@@ -72,7 +73,7 @@ Answer VirtualService::ask(const ViewRequest& issued) {
   request.session_id = k_session_id;
   request.acked_set_seq = sets_.acked_seq();
   session_.accept(request, 0.0);
-  VisibleSetFrame frame = session_.answer(*engine_, scene_.digest, 0.0);
+  VisibleSetFrame frame = session_.answer(0.0);
   std::optional<VisibleSet> set = sets_.decode(frame, scene_.object_count());
   if (!set) throw std::logic_error("the daemon's answer does not decode");
   Answer answer;

@@ -103,7 +103,7 @@ class VirtualService {
 
   const Scene& scene_;
   ServiceSetup setup_;
-  std::unique_ptr<VisibilityEngine> engine_, judge_;
+  std::unique_ptr<VisibilityEngine> judge_;
   Session session_;
   SessionSets sets_;
   ObjectHierarchy hierarchy_;

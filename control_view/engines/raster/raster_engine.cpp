@@ -10,16 +10,17 @@
 #include <glm/matrix.hpp>
 
 #include "common/error.hpp"
-#include "common/gl/gpu_scene.hpp"
 #include "common/object_hierarchy.hpp"
 #include "control_view/engines/boxed_objects.hpp"
 #include "control_view/engines/histogram.hpp"
 #include "control_view/engines/last_seen.hpp"
 #include "control_view/engines/moved_objects.hpp"
+#include "control_view/engines/raster/explain_view.hpp"
 #include "control_view/engines/raster/kernel.hpp"
 #include "control_view/engines/raster/near_objects.hpp"
 #include "control_view/engines/raster/nearest_first.hpp"
 #include "control_view/engines/raster/raster_scene.hpp"
+#include "control_view/engines/raster/raster_view.hpp"
 #include "control_view/engines/raster/region_worker.hpp"
 #include "control_view/engines/raster/strips.hpp"
 #include "control_view/engines/raster/whole_depth.hpp"
@@ -35,17 +36,6 @@ using raster::RasterView;
 using raster::RegionCount;
 using raster::RegionJob;
 using raster::RegionWorker;
-
-RasterView view_of(const Eye& eye, const glm::dvec3& world_origin_m, ImageSize image) {
-  RasterView view;
-  const glm::mat4 clip_from_scene = gl::depth_clip_from_scene(eye, world_origin_m);
-  for (int column = 0; column < 4; ++column) {
-    for (int row = 0; row < 4; ++row) view.clip_from_scene[column][row] = clip_from_scene[column][row];
-  }
-  view.image_width = static_cast<std::int32_t>(image.width);
-  view.image_height = static_cast<std::int32_t>(image.height);
-  return view;
-}
 
 /// Per the docstring of ErosionRadius. The way of a point in the image is the eye's, over its distance, in
 /// pixels of a flat image: up to a quarter more away from the middle.
@@ -100,7 +90,7 @@ class RasterEngine final : public VisibilityEngine {
   }
 
   void apply(const SceneEdits& edits) override {
-    session_ = edits.owner;
+    viewer_ = viewer_of(edits);
     edits_ = edits;
   }
 
@@ -140,6 +130,11 @@ class RasterEngine final : public VisibilityEngine {
     }
     stats.count_s = watch.lap_s();
     return stats;
+  }
+
+  Explanation explain(const ViewQuery& query, ObjectId id) override {
+    place(query.boxed);
+    return raster::explain_view({scene_, kernel_scene_, hierarchy_, kernel_, workers_, threads_}, query, id);
   }
 
  private:
@@ -241,7 +236,7 @@ class RasterEngine final : public VisibilityEngine {
     };
     std::vector<raster::Closeup> closeups =
         raster::closeups_of(spots, blocks(query.size.width), blocks(query.size.height), kept);
-    const RasterView view = view_of(query.eyes[eye], scene_.world_origin_m, fine);
+    const RasterView view = raster::view_of(query.eyes[eye], scene_.world_origin_m, fine);
     for (raster::Closeup& closeup : closeups) {
       closeup.scene = &kernel_scene_;
       closeup.view = &view;
@@ -301,13 +296,13 @@ class RasterEngine final : public VisibilityEngine {
       }
     }
     // Views first: tasks point at them.
-    for (const Eye& eye : query.eyes) views_.push_back(view_of(eye, scene_.world_origin_m, image));
+    for (const Eye& eye : query.eyes) views_.push_back(raster::view_of(eye, scene_.world_origin_m, image));
     for (std::size_t eye = 0; eye < query.eyes.size(); ++eye) {
       const glm::dvec3 eye_m = position_of(query.eyes[eye]) - scene_.world_origin_m;
       std::vector<std::uint32_t>& first = first_[eye];
-      const std::vector<std::uint32_t>* seen = &seen_.of(session_, eye);
+      const std::vector<std::uint32_t>* seen = &seen_.of(viewer_, eye);
       // A second eye that has seen nothing yet begins with what the first one saw.
-      if (seen->empty() && eye > 0) seen = &seen_.of(session_, eye - 1);
+      if (seen->empty() && eye > 0) seen = &seen_.of(viewer_, eye - 1);
       first.assign(seen->begin(), seen->end());
       nearest_first_.sort(first, glm::vec3(eye_m), scene_);
       raster::Strips& cuts = cuts_of(eye, strips);
@@ -365,7 +360,7 @@ class RasterEngine final : public VisibilityEngine {
     }
     // A part of a view says little about what the whole shows.
     if (part) return;
-    std::vector<std::uint32_t>& seen = seen_.of(session_, eye);
+    std::vector<std::uint32_t>& seen = seen_.of(viewer_, eye);
     seen.clear();
     for (const RegionWorker& worker : workers_) {
       seen.insert(seen.end(), worker.seen_of(eye).begin(), worker.seen_of(eye).end());
@@ -422,7 +417,7 @@ class RasterEngine final : public VisibilityEngine {
   std::vector<std::uint32_t> near_;
   std::vector<raster::WholeDepth> closeup_depths_;  ///< by worker
   std::vector<Task> tasks_;
-  std::uint64_t session_ = 0;
+  std::uint64_t viewer_ = 0;
   SceneEdits edits_;
   std::uint64_t left_out_version_ = 0;
   std::vector<std::vector<raster::BoxedItem>> boxes_;  ///< by eye

@@ -81,6 +81,14 @@ void RegionWorker::probe(const KernelFunctions& kernel, const ProbeJob& job, std
   drawn_triangles_ += result.drawn_triangles;
 }
 
+RegionResult RegionWorker::draw_image(const KernelFunctions& kernel, const RegionJob& job,
+                                      OwnerImage& image) {
+  begin_round();
+  const RegionResult result = kernel.draw(job, memory_);
+  read_owners(job.region, *job.scene, memory_, image);
+  return result;
+}
+
 void RegionWorker::look_closer(const KernelFunctions& kernel, const Closeup& closeup, WholeDepth& depth,
                                std::vector<std::uint32_t>& kept) {
   RegionJob draw;

@@ -5,6 +5,7 @@
 
 #include "control_view/engines/raster/closeup.hpp"
 #include "control_view/engines/raster/kernel.hpp"
+#include "control_view/engines/raster/owner_image.hpp"
 #include "control_view/engines/raster/whole_depth.hpp"
 
 namespace sightline::raster {
@@ -29,6 +30,9 @@ class RegionWorker {
   /// stay open.
   void look_closer(const KernelFunctions& kernel, const Closeup& closeup, WholeDepth& depth,
                    std::vector<std::uint32_t>& kept);
+
+  /// Draws a region of a view and says who owns its pixels; counts nothing.
+  RegionResult draw_image(const KernelFunctions& kernel, const RegionJob& job, OwnerImage& image);
 
   /// Forgets what was counted and makes room for the next views: `eyes` of them, no region of more than
   /// `blocks` blocks.
