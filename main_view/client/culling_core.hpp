@@ -53,10 +53,24 @@ class FrameDecision {
   /// frustum that neither set's field covered (nobody has tested it there). So it does for an object that
   /// moved, where no set in use looked for it, and for all that it may have hidden where it was. False
   /// without exception for one that is hidden by hide_objects. View-frustum culling is the caller's.
-  [[nodiscard]] bool may_be_visible(ObjectId id, const Aabb& world_bounds) const;
+  [[nodiscard]] bool may_be_visible(ObjectId id, const Aabb& world_bounds) const {
+    if (moved.is_absent(id)) return false;
+    if (fallback != Fallback::none || is_seen(id)) return true;
+    if (field_covered && moved.draws_nothing()) return false;
+    return moved.must_draw(id, world_bounds) || may_be_untested(world_bounds);
+  }
+  /// Whether the object is in `visible`.
+  [[nodiscard]] bool is_seen(ObjectId id) const {
+    const std::size_t word = index_of(id) / 64;
+    if (word < visible_bits.size()) return (visible_bits[word] >> (index_of(id) % 64) & 1) != 0;
+    return visible_bits.empty() && visible.contains(id);
+  }
+  /// Whether the box may reach into a part of the view that no set has looked at.
+  [[nodiscard]] bool may_be_untested(const Aabb& world_bounds) const;
 
   Fallback fallback = Fallback::no_set;
-  VisibleSet visible;               ///< S_last OR S_next, with every later set at hand: see all_after
+  VisibleSet visible;                       ///< S_last OR S_next, with every later set at hand: see all_after
+  std::vector<std::uint64_t> visible_bits;  ///< the same, a bit an object as far as its last; or empty
   bool field_covered = false;       ///< the whole view frustum was tested; world_bounds is then not looked at
   std::vector<Frustum> tested;      ///< the widened fields of S_last and S_next, world frame; for display
   std::vector<TestedField> fields;  ///< without field_covered: what may_be_visible decides by
@@ -85,6 +99,9 @@ class CullingCore {
   /// projections and are forgotten. Requests keep their numbering, so that the session goes on. Throws
   /// InputError for a rig that the constructor would refuse; nothing changed then.
   void set_rig(std::vector<RigEye> rig);
+  /// The same where the eyes differ little, as those of a lens that zooms or of a light that follows the
+  /// camera: the sets at hand stay, and what they have not looked at is drawn. Requires as many eyes.
+  void adjust_rig(std::vector<RigEye> rig);
 
   /// Objects that may move, as the scene file has them: call it once, before the first request. An object
   /// that was never declared is told as well, but when it first moves nobody knows what it hid, so everything
@@ -99,6 +116,23 @@ class CullingCore {
   /// none is wrong for it. Throws InputError for what is not finite; nothing changed then.
   void move_objects(double now_s, std::span<const MovedObject> objects);
 
+  /// Objects that are boxes, and where these are at `now_s`: what the application added (in a spare id),
+  /// replaced by other geometry, or deforms. Every request carries their boxes from now on, also while they
+  /// stand; they hide nothing, and are drawn until a set knows them and unless the whole box is hidden. Give
+  /// the boxes that changed, before decide of that frame; any others do no harm; or give their placements to
+  /// move_objects from then on.
+  ///
+  /// Declare before what the daemon's scene has geometry for: that leaves its shadow as a mover does. An id
+  /// of which nothing was said is taken for a spare, which hid nothing. hide_objects and show_objects hold
+  /// for boxes as well: to remove one is to hide it. Throws InputError for a box that is not finite, is empty
+  /// or has min above max; nothing changed then.
+  void box_objects(double now_s, std::span<const BoxedPlacement> objects);
+  /// The same for the boxes around bounds in the objects' own frames.
+  void box_objects(double now_s, std::span<const MovedObject> objects);
+  /// These are again what the daemon's scene has, where declare_objects or move_objects placed them last. A
+  /// spare, of which it has nothing, is hidden. Ids that are not boxed are ignored.
+  void unbox_objects(std::span<const ObjectId> ids);
+
   /// Objects that are not there from now on: not drawn, whatever the sets say, and hiding nothing.
   void hide_objects(std::span<const ObjectId> ids);
   /// Objects that are there again, where they were last placed: drawn until a set knows them. At first all
@@ -111,9 +145,20 @@ class CullingCore {
   /// within min_guard_rad and max_guard_rad. Throws InputError without a pose.
   [[nodiscard]] ViewRequest make_request(double now_s, ImageSize main_size);
 
+  /// What is seen through these very eyes at `now_s`, unwidened, for a client that waits for the answer.
+  /// Needs no pose.
+  [[nodiscard]] ViewRequest make_exact_request(double now_s, ImageSize main_size, std::span<const Eye> eyes);
+
+  /// The next request's number: for a core that takes another one's place in a session. Call it before the
+  /// first request.
+  void number_requests_from(std::uint64_t request_seq) noexcept;
+  [[nodiscard]] std::uint64_t next_request_seq() const noexcept { return next_request_seq_; }
+  /// The lowest number among the requests whose answers may still be used at `now_s` or later.
+  [[nodiscard]] std::optional<std::uint64_t> oldest_filed_request(double now_s) const noexcept;
+
   /// Files an answer under the time it is for. `request` is the one it answers; answers to requests from
   /// before the last jump or new rig are dropped. The round trip (received - issued) moves the horizon.
-  void accept(const ViewRequest& request, double issued_s, const VisibleSet& set, double received_s);
+  void accept(ViewRequest request, double issued_s, VisibleSet set, double received_s);
 
   /// The daemon or its session is gone: forget all sets. All moved objects will be told anew.
   void forget_sets();
@@ -127,6 +172,7 @@ class CullingCore {
   [[nodiscard]] const std::vector<RigEye>& rig() const noexcept { return rig_; }
 
  private:
+  [[nodiscard]] ViewRequest begin_request(double for_time_s, ImageSize main_size);
   [[nodiscard]] double guard_rad(const PredictedPose& predicted) const noexcept;
   [[nodiscard]] bool usable(const FiledSet& filed, double now_s, std::span<const Eye> eyes) const;
   /// No set at hand or on its way serves any longer.

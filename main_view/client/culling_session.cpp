@@ -1,6 +1,7 @@
 #include "main_view/client/culling_session.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <string>
 #include <type_traits>
@@ -37,11 +38,13 @@ struct CullingSession::Impl {
   void say_hello(double now_s);
   void send_message(const Message& message) { link.send(encode(message)); }
   void lose();
+  void forget_views();
   void refuse(Refusal why);
 
   void on(const Welcome& message, double now_s);
   void on(const Refusal& message, double now_s);
   void on(VisibleSetFrame message, double now_s);
+  void on(const WhyAnswer& message, double now_s);
   void on(const Ping& message, double) { send_message(Pong{message.nonce, message.time_s}); }
   void on(const Pong&, double) {}
   template <typename ForTheDaemon>
@@ -55,9 +58,13 @@ struct CullingSession::Impl {
   SessionState state = SessionState::connecting;
   std::optional<Welcome> welcome;
   std::optional<Refusal> refusal;
-  SessionSets sets;
-  RequestsInFlight in_flight;
-  std::vector<Answer> answers;  // not yet handed out
+  struct View {
+    SessionSets sets;
+    RequestsInFlight in_flight;
+  };
+  std::array<View, k_max_views> views;
+  std::vector<Answer> answers;         // not yet handed out
+  std::vector<WhyAnswer> why_answers;  // likewise
   std::uint64_t lost_count = 0;
   std::uint64_t bad_frames = 0;
 
@@ -123,6 +130,13 @@ void CullingSession::Impl::say_hello(double now_s) {
   hello_backoff = std::min(2.0 * hello_backoff, k_longest_backoff);
 }
 
+void CullingSession::Impl::forget_views() {
+  for (View& view : views) {
+    view.sets.clear();
+    view.in_flight.clear();
+  }
+}
+
 void CullingSession::Impl::lose() {
   if (state == SessionState::open) {
     ++lost_count;
@@ -130,8 +144,7 @@ void CullingSession::Impl::lose() {
   }
   state = SessionState::connecting;
   welcome.reset();
-  sets.clear();
-  in_flight.clear();
+  forget_views();
   next_hello_s.reset();
   hello_backoff = 1.0;
 }
@@ -166,8 +179,7 @@ void CullingSession::Impl::on(const Welcome& message, double) {
   if (welcome && welcome->session_id != message.session_id) {
     // The daemon began anew under our feet: whatever the old session knew is gone.
     ++lost_count;
-    sets.clear();
-    in_flight.clear();
+    forget_views();
   }
   welcome = message;
   refusal.reset();
@@ -211,17 +223,23 @@ void CullingSession::Impl::on(VisibleSetFrame message, double) {
     ++bad_frames;
     return;
   }
-  std::optional<VisibleSet> set = sets.decode(message, welcome->object_count);
+  View& view = views[message.view];  // below k_max_views: the decoder saw to it
+  std::optional<VisibleSet> set = view.sets.decode(message, welcome->object_count);
   if (!set) {
     ++bad_frames;
     return;
   }
-  auto asked = in_flight.take(message.request_seq);
+  auto asked = view.in_flight.take(message.request_seq);
   if (!asked) return;
   message.bitmap.clear();
   message.extents_of.clear();
   message.extents.clear();
   answers.push_back({std::move(asked->request), asked->issued_s, std::move(*set), std::move(message)});
+}
+
+void CullingSession::Impl::on(const WhyAnswer& message, double) {
+  if (state != SessionState::open || message.session_id != welcome->session_id) return;
+  why_answers.push_back(message);
 }
 
 CullingSession::CullingSession(SessionOptions options) : impl_(std::make_unique<Impl>(std::move(options))) {}
@@ -241,19 +259,47 @@ std::vector<Answer> CullingSession::poll(double now_s) {
 bool CullingSession::send(ViewRequest request, double now_s) {
   if (impl_->state != SessionState::open) return false;
   request.session_id = impl_->welcome->session_id;
-  request.acked_set_seq = impl_->sets.acked_seq();
-  const Message message(std::move(request));
+  Impl::View& view = impl_->views.at(request.view);
+  request.acked_set_seq = view.sets.acked_seq();
+  Message message(std::move(request));
   if (!impl_->link.send(encode(message))) return false;
-  impl_->in_flight.add(std::get<ViewRequest>(message), now_s);
+  view.in_flight.add(std::get<ViewRequest>(std::move(message)), now_s);
   return true;
 }
 
-std::optional<Answer> CullingSession::wait_for(std::uint64_t request_seq, double timeout_s) {
+bool CullingSession::send_why(std::uint64_t nonce, std::uint8_t view, ObjectId id) {
+  if (impl_->state != SessionState::open) return false;
+  return impl_->link.send(encode(Why{impl_->welcome->session_id, nonce, view, id}));
+}
+
+std::vector<WhyAnswer> CullingSession::take_why_answers() {
+  return std::exchange(impl_->why_answers, {});
+}
+
+void CullingSession::wait(double timeout_s) {
+  const auto wait = std::chrono::milliseconds(static_cast<int>(std::clamp(timeout_s, 0.0, 1.0) * 1000.0) + 1);
+  if (const auto frame = impl_->link.receive(wait)) impl_->take_frame(*frame, impl_->last_step_s);
+}
+
+void CullingSession::retry() {
+  if (impl_->state != SessionState::refused) return;
+  impl_->state = SessionState::connecting;
+  impl_->refusal.reset();
+  impl_->next_hello_s.reset();
+  impl_->hello_backoff = 1.0;
+}
+
+std::optional<std::uint64_t> CullingSession::oldest_in_flight(std::uint8_t view) const noexcept {
+  return view < k_max_views ? impl_->views[view].in_flight.oldest_seq() : std::nullopt;
+}
+
+std::optional<Answer> CullingSession::wait_for(std::uint64_t request_seq, double timeout_s,
+                                               std::uint8_t view) {
   const Clock::time_point start = Clock::now();
   while (true) {
     auto& answers = impl_->answers;
     const auto found = std::find_if(answers.begin(), answers.end(), [&](const Answer& answer) {
-      return answer.request.request_seq == request_seq;
+      return answer.request.request_seq == request_seq && answer.request.view == view;
     });
     if (found != answers.end()) {
       Answer answer = std::move(*found);

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "main_view/client/culling_core.hpp"
 #include "protocol/endpoint_link.hpp"
@@ -30,10 +31,11 @@ struct Answer {
   VisibleSetFrame frame;  ///< bitmap left empty; times and counts as sent
 };
 
-/// The session with one daemon: handshake, heartbeat, reconnect, deltas against the last acknowledged set.
-/// Never blocks except in wait_for and wait_until_open. A refused session (other version, other scene, a
-/// reason only a newer daemon has) stays refused and says why. A daemon that is full (RefusalReason::limit)
-/// is asked again, four reconnect_interval_s apart: the session stays connecting meanwhile, and says why.
+/// The session with one daemon: handshake, heartbeat, reconnect, deltas against the last acknowledged set,
+/// for each view by itself. Never blocks except in wait, wait_for and wait_until_open. A refused session
+/// (other version, other scene, a reason only a newer daemon has) stays refused and says why. A daemon that
+/// is full (RefusalReason::limit) is asked again, four reconnect_interval_s apart: the session stays
+/// connecting meanwhile, and says why.
 class CullingSession {
  public:
   explicit CullingSession(SessionOptions options);
@@ -43,19 +45,31 @@ class CullingSession {
   /// Returns the answers that arrived, oldest first. A frame that does not decode is counted and dropped.
   std::vector<Answer> poll(double now_s);
 
-  /// Sends a request (fills in session_id and acked_set_seq). Does nothing unless open.
+  /// Sends a request of any of the session's views (fills in session_id and acked_set_seq). Does nothing
+  /// unless open. `now_s` comes back as the answer's issued_s and may be of another clock than poll's.
   bool send(ViewRequest request, double now_s);
+  /// Asks why; false unless open. The answers come from take_why_answers after a poll.
+  bool send_why(std::uint64_t nonce, std::uint8_t view, ObjectId id);
+  [[nodiscard]] std::vector<WhyAnswer> take_why_answers();
 
-  /// Blocks until the answer to `request_seq` has arrived or `timeout_s` passed. For audits and tests.
-  [[nodiscard]] std::optional<Answer> wait_for(std::uint64_t request_seq, double timeout_s);
+  /// Blocks until the answer to `request_seq` of a view has arrived or `timeout_s` passed. For audits and
+  /// tests.
+  [[nodiscard]] std::optional<Answer> wait_for(std::uint64_t request_seq, double timeout_s,
+                                               std::uint8_t view = 0);
+  /// Blocks until anything has arrived or `timeout_s` passed; the next poll files it.
+  void wait(double timeout_s);
   /// Blocks until the session is open or refused, or `timeout_s` passed.
   SessionState wait_until_open(double timeout_s);
+  /// Says Hello again with the next poll, though refused: the daemon has got the scene meanwhile.
+  void retry();
 
   [[nodiscard]] SessionState state() const noexcept;
   /// The daemon's Welcome, while open.
   [[nodiscard]] const std::optional<Welcome>& welcome() const noexcept;
   /// Why the session was refused, while refused; or, while connecting, what a full daemon said last.
   [[nodiscard]] const std::optional<Refusal>& refusal() const noexcept;
+  /// Number of the oldest request of a view that an answer may still come to; empty when none can.
+  [[nodiscard]] std::optional<std::uint64_t> oldest_in_flight(std::uint8_t view) const noexcept;
   /// Goes up each time an open session is lost: the caller then forgets its sets.
   [[nodiscard]] std::uint64_t lost_count() const noexcept;
   [[nodiscard]] std::uint64_t bytes_sent() const noexcept;

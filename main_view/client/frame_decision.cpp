@@ -4,9 +4,7 @@
 
 namespace sightline {
 
-bool FrameDecision::may_be_visible(ObjectId id, const Aabb& world_bounds) const {
-  if (moved.is_absent(id)) return false;
-  if (fallback != Fallback::none || visible.contains(id) || moved.must_draw(id, world_bounds)) return true;
+bool FrameDecision::may_be_untested(const Aabb& world_bounds) const {
   if (field_covered) return false;
   // Hidden for an eye when one of the sets looked at all of the object that this eye can see, and saw
   // nothing.

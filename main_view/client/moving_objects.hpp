@@ -1,16 +1,18 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
-#include <map>
-#include <set>
 #include <span>
 #include <vector>
 
 #include "common/bounds.hpp"
 #include "common/object_id.hpp"
+#include "main_view/client/box_motion.hpp"
+#include "main_view/client/cast_shadows.hpp"
+#include "main_view/client/foretold_boxes.hpp"
+#include "main_view/client/id_slots.hpp"
+#include "main_view/client/moved_in_frame.hpp"
 #include "main_view/client/object_motion.hpp"
-#include "main_view/client/occluder_shadow.hpp"
+#include "main_view/client/told_history.hpp"
 #include "main_view/client/visible_set_timeline.hpp"
 #include "protocol/messages.hpp"
 
@@ -23,15 +25,10 @@ struct MovedObject {
   Aabb object_bounds;                   ///< object's own frame; must hold all that it draws
 };
 
-/// What the objects that moved, came or went add to a frame's decision.
-struct MovedInFrame {
-  std::vector<ObjectId> absent;         ///< not there: not drawn, whatever else holds; ascending
-  std::vector<ObjectId> untested;       ///< no set in use looked for them where they are: drawn; ascending
-  std::vector<OccluderShadow> shadows;  ///< where a set in use may have missed what is no longer hidden
-  bool everything = false;              ///< more shadows than are worth testing: all in the view is drawn
-
-  [[nodiscard]] bool is_absent(ObjectId id) const noexcept;
-  [[nodiscard]] bool must_draw(ObjectId id, const Aabb& world_bounds) const noexcept;
+/// Where an object is of which nobody but the application knows the shape.
+struct BoxedPlacement {
+  ObjectId id{};
+  WorldBox world_bounds;  ///< world frame, metres; must hold all that it draws
 };
 
 /// The client's account of objects that do not stand where the scene file has them, and of what each request
@@ -39,12 +36,15 @@ struct MovedInFrame {
 ///
 /// An object is at rest, on the move, or absent. At rest it is an occluder like any other: the daemon is told
 /// its placement once. On the move it is carried by every request as a box that holds it while the answer may
-/// be used; it hides nothing then. It comes to rest after k_rest_intervals answers without a change.
+/// be used; it hides nothing then. It comes to rest after k_rest_intervals answers without a change. An
+/// object that is boxed for good counts as on the move even while it stands: its shape is not the daemon's.
 ///
 /// What a set does not know is made good here: an object is drawn wherever it is not what each set in use
 /// took it for, and so is all that it may have hidden where it stood as an occluder and no longer stands.
 ///
-/// Error: towards drawing, provided that `object_bounds` hold and that all placements are told before decide.
+/// Error: towards drawing, provided that bounds hold and that all placements are told before decide.
+/// Cost: follows the objects that changed lately, not those declared; nothing is allocated for an object that
+/// goes on moving.
 class MovingObjects {
  public:
   /// How the times of requests and answers lie; from the horizon's measurements.
@@ -58,8 +58,14 @@ class MovingObjects {
   /// Where objects stand in the scene file, so that the first move of each costs nothing.
   void declare(std::span<const MovedObject> objects);
   /// Placements at `now_s`; `last_frame_s` is when the frame before was drawn. Returns false when an object
-  /// moved of which nobody said where it stood: no set from before is of any use then.
+  /// moved of which nobody said where it stood: no set from before is of any use then. An object that is
+  /// boxed is the box around these bounds, and stands there when it is geometry again.
   [[nodiscard]] bool move(double now_s, double last_frame_s, std::span<const MovedObject> objects);
+  /// These are boxes at `now_s` and boxed from now on. One that nothing was said of before is a spare: the
+  /// scene has no geometry for it. Returns false as above. What is hidden stays so.
+  [[nodiscard]] bool box(double now_s, double last_frame_s, std::span<const BoxedPlacement> objects);
+  /// These are what the daemon's scene has again, where they were placed last. A spare is then absent.
+  void unbox(std::span<const ObjectId> ids);
   /// Returns false as above.
   [[nodiscard]] bool hide(std::span<const ObjectId> ids);
   void show(std::span<const ObjectId> ids);
@@ -69,7 +75,7 @@ class MovingObjects {
   /// A set answers request `request_seq`.
   void acknowledge(std::uint64_t request_seq) noexcept;
   /// The daemon has begun anew from the scene file: all is told again.
-  void forget_told() noexcept;
+  void forget_told();
 
   /// What `used` do not know of. Cost follows the objects that changed lately, times the sets.
   [[nodiscard]] MovedInFrame judge(std::span<const FiledSet* const> used) const;
@@ -77,75 +83,79 @@ class MovingObjects {
   /// Answers without a change after which an object counts as resting, and the least time.
   static constexpr double k_rest_intervals = 3.0;
   static constexpr double k_least_rest_s = 0.1;
-  /// Eyes no further apart share a shadow, metres: a little larger, and asked about once.
-  static constexpr double k_shared_shadow_m = 0.3;
-  /// Foretold boxes that are kept to learn from.
-  static constexpr std::size_t k_most_foretold = 6;
   /// Shadows a frame tests every object against; beyond, drawing all is cheaper than asking.
   static constexpr std::size_t k_most_shadows = 256;
 
  private:
-  enum class State : std::uint8_t { unknown, resting, moving, absent };
-
-  /// What requests from `first_seq` on say of the object, until the next such entry.
-  struct Told {
-    std::uint64_t first_seq = 0;
-    double time_s = 0.0;
-    State state = State::unknown;
-    glm::dmat4x3 world_from_object{1.0};  ///< resting
-    WorldBox bounds;                      ///< resting
+  /// As the scene file has an object that never moved.
+  struct Declared {
+    glm::dmat4x3 world_from_object{1.0};
+    Aabb object_bounds;
   };
-  struct Foretold {
-    double from_s = 0.0, until_s = 0.0;
-    WorldBox bounds;  ///< as extrapolated, not widened
-  };
-  /// A message that is repeated until a request that carried it is answered.
-  struct Delivery {
-    bool due = false;
-    std::uint64_t first_seq = 0;  ///< 0: not sent yet
-    void begin() noexcept { *this = {true, 0}; }
-    void send(std::uint64_t seq) noexcept {
-      if (first_seq == 0) first_seq = seq;
-    }
-    void acknowledge(std::uint64_t seq) noexcept {
-      if (first_seq != 0 && seq >= first_seq) due = false;
-    }
-  };
-  struct Tracked {
-    ObjectMotion motion;
-    WorldBox bounds{};         ///< where it is now
+  /// What every frame looks at; the rest is in arrays of its own, by the same slot.
+  struct Standing {
+    WorldBox bounds{};                         ///< where it is now
+    std::uint64_t boxed_since = k_never_told;  ///< requests from here on carry its box
+    ObjectId id{};
+    std::uint32_t box_slot = IdSlots::k_none;  ///< of its BoxMotion, once it had one
+    ObjectState state = ObjectState::resting;
+    bool steady = false;       ///< on the move, and all requests that may be answered say so
+    bool active = false;       ///< listed in active_
     bool placed = false;       ///< its placement is known
     bool as_in_file = false;   ///< it never moved
     bool never_hidden = true;  ///< the daemon need not be told that it is there
-    State state = State::resting;
+    bool boxed = false;        ///< for good
+    bool spare = false;        ///< the scene has no geometry for it
+    bool under_way = false;    ///< listed in under_way_
+  };
+  /// How far what was foretold of it was off.
+  struct Learnt {
     double changed_s = 0.0;
-    Delivery move{}, presence{};
-    std::vector<Told> told{};  ///< ascending first_seq
-    std::deque<Foretold> foretold{};
-    double error_m = 0.0;  ///< what extrapolations lately missed by
-    double error_s = 0.0;  ///< as of this time
+    double error_m = 0.0;
+    double error_s = 0.0;              ///< as of this time
+    std::uint64_t foretold_since = 0;  ///< columns from this one on are about it
+  };
+  struct News {
+    ToldHistory told;
+    Delivery move, presence;
   };
 
-  Tracked& track(ObjectId id);
-  void learn(Tracked& object, double now_s) const;
-  void settle(Tracked& object, double now_s, const Usage& usage) const;
-  void tell(Tracked& object, std::uint64_t seq, double now_s) const;
-  [[nodiscard]] WorldBox box_of(Tracked& object, double now_s, const Usage& usage) const;
-  [[nodiscard]] static bool is_quiet(const Tracked& object) noexcept;
-  /// A shadow to be: of one old place, for viewpoints near one eye.
-  struct Cast {
-    const Told* told = nullptr;
-    const Eye* eye = nullptr;
-    double slack_m = 0.0;
-  };
+  std::uint32_t slot_of(ObjectId id);
+  std::uint32_t add_slot(ObjectId id);
+  void activate(std::uint32_t slot);
+  void list_newcomers();
+  void begin_moving(std::uint32_t slot) noexcept;
+  void place(std::uint32_t slot, const MovedObject& given);
+  void step_box(std::uint32_t slot, double now_s, double last_frame_s, const WorldBox& bounds,
+                const ForetoldBoxes::Covering& covering);
+  void learn(std::uint32_t slot, double now_s, const ForetoldBoxes::Covering& covering) noexcept;
+  void settle(std::uint32_t slot, double now_s, const Usage& usage, const ForetoldBoxes::Covering& covering);
+  [[nodiscard]] WorldBox box_of(std::uint32_t slot, double now_s, const Usage& usage,
+                                ForetoldBoxes::Column* column) const;
+  void tell(std::uint32_t slot, std::uint64_t seq, double now_s, double keep_s);
+  void deliver(std::uint32_t slot, ViewRequest& request);
+  [[nodiscard]] bool is_quiet(std::uint32_t slot) const noexcept;
+  [[nodiscard]] double step_s(std::uint32_t slot) const noexcept;
+  void stop(std::uint32_t slot) noexcept;
+
   /// What the set knows wrong of the object. Whether the object itself has to be drawn for it.
-  [[nodiscard]] static bool misjudged(ObjectId id, const Tracked& object, const FiledSet& filed,
-                                      std::vector<Cast>& casts, bool& everything);
-  static void cast(const Told& told, const ViewRequest& request, std::vector<Cast>& casts);
+  [[nodiscard]] bool misjudged(std::uint32_t slot, const FiledSet& filed, const BoxedObject* box,
+                               std::vector<ShadowToBe>& shadows, bool& everything) const;
 
-  std::map<ObjectId, Tracked> objects_;
-  std::set<ObjectId> active_;  ///< all but those at rest that every request at hand agrees about
-  std::set<ObjectId> absent_;
+  IdSlots declared_slots_, slots_;
+  std::vector<Declared> declared_;
+  std::vector<Standing> standing_;
+  std::vector<Learnt> learnt_;
+  std::vector<ObjectMotion> motions_;
+  std::vector<News> news_;
+  std::vector<BoxMotion> box_motions_;    ///< by box_slot
+  std::vector<std::uint32_t> active_;     ///< slots, by ascending ids: all but those at rest (or absent) that
+                                          ///< every request at hand agrees about
+  std::vector<std::uint32_t> newcomers_;  ///< to active_
+  std::vector<std::uint32_t> under_way_;  ///< slots with deliveries sent and not acknowledged
+  std::vector<ObjectId> absent_;          ///< ascending
+  ForetoldBoxes foretold_;
+  double decay_s_ = 0.0, decay_ = 1.0;  ///< what an error keeps after so long
 };
 
 }  // namespace sightline

@@ -11,7 +11,7 @@
 
 namespace sightline {
 
-/// The last few decoded sets of a session: what deltas are against, and what may be acknowledged.
+/// The last few decoded sets of a session's view: what deltas are against, and what may be acknowledged.
 class SessionSets {
  public:
   void clear() noexcept { *this = SessionSets(); }
@@ -33,8 +33,8 @@ class SessionSets {
   bool keyframe_needed_ = true;
 };
 
-/// Requests that are on their way, so that an answer can be filed with what was asked. Bounded: the oldest
-/// goes.
+/// Requests of a view that are on their way, so that an answer can be filed with what was asked. Bounded: the
+/// oldest goes.
 class RequestsInFlight {
  public:
   struct Entry {
@@ -46,6 +46,11 @@ class RequestsInFlight {
   void add(ViewRequest request, double issued_s);
   /// The request numbered `request_seq`; it and older ones (superseded: newest wins) are forgotten.
   [[nodiscard]] std::optional<Entry> take(std::uint64_t request_seq);
+  /// The oldest request that may still be answered.
+  [[nodiscard]] std::optional<std::uint64_t> oldest_seq() const noexcept {
+    if (entries_.empty()) return {};
+    return entries_.front().request.request_seq;
+  }
 
  private:
   static constexpr std::size_t k_held = 256;

@@ -18,11 +18,15 @@ constexpr auto k_is_after = [](double time_s, const FiledSet& filed) {
 
 void VisibleSetTimeline::file(ViewRequest request, VisibleSet set) {
   const auto at = std::lower_bound(sets_.begin(), sets_.end(), request.for_time_s, k_is_before);
-  if (at != sets_.end() && at->request.for_time_s == request.for_time_s) {
-    if (request.request_seq > at->request.request_seq) *at = {std::move(request), std::move(set)};
+  const bool same_time = at != sets_.end() && at->request.for_time_s == request.for_time_s;
+  if (same_time && request.request_seq <= at->request.request_seq) return;
+  SeenSet seen(set);
+  FiledSet filed{std::move(request), std::move(set), std::move(seen)};
+  if (same_time) {
+    *at = std::move(filed);
     return;
   }
-  sets_.insert(at, {std::move(request), std::move(set)});
+  sets_.insert(at, std::move(filed));
   if (sets_.size() > capacity_) sets_.erase(sets_.begin());
 }
 
@@ -43,6 +47,16 @@ const FiledSet* VisibleSetTimeline::next_after(double now_s) const noexcept {
 std::span<const FiledSet> VisibleSetTimeline::all_after(double now_s) const noexcept {
   const auto after = std::upper_bound(sets_.begin(), sets_.end(), now_s, k_is_after);
   return std::span(sets_).subspan(static_cast<std::size_t>(after - sets_.begin()));
+}
+
+std::optional<std::uint64_t> VisibleSetTimeline::lowest_request_seq(double from_s) const noexcept {
+  std::optional<std::uint64_t> lowest;
+  for (const FiledSet& filed : sets_) {
+    if (filed.request.for_time_s < from_s) continue;
+    const std::uint64_t seq = filed.request.request_seq;
+    lowest = std::min(lowest.value_or(seq), seq);
+  }
+  return lowest;
 }
 
 }  // namespace sightline

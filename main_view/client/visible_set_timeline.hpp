@@ -1,9 +1,12 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "main_view/client/seen_set.hpp"
 #include "protocol/messages.hpp"
 #include "protocol/visible_set.hpp"
 
@@ -14,6 +17,7 @@ namespace sightline {
 struct FiledSet {
   ViewRequest request;
   VisibleSet set;
+  SeenSet seen{};  ///< the set, made ready by the timeline
 };
 
 /// The visible sets at hand, each under the time it is FOR (not when it arrived), oldest first. Client's
@@ -36,6 +40,8 @@ class VisibleSetTimeline {
   [[nodiscard]] const FiledSet* next_after(double now_s) const noexcept;
   /// S_next and every set for a later time, nearest first. Valid until the timeline changes.
   [[nodiscard]] std::span<const FiledSet> all_after(double now_s) const noexcept;
+  /// The lowest request number of the sets held for times from `from_s` on; empty without any.
+  [[nodiscard]] std::optional<std::uint64_t> lowest_request_seq(double from_s) const noexcept;
   [[nodiscard]] std::size_t size() const noexcept { return sets_.size(); }
 
  private:

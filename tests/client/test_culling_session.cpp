@@ -338,6 +338,73 @@ TEST_F(CullingSessionOverLoopback, IgnoresSetsOfAnotherSessionOrOfNoRequest) {
   EXPECT_EQ(answers_[0].set, set_of({7}));
 }
 
+TEST_F(CullingSessionOverLoopback, KeepsTheViewsRequestsSetsAndAcknowledgementsApart) {
+  welcome(77);
+  ViewRequest mirror = request_numbered(1);
+  mirror.view = 3;
+  exchange(1);
+  ASSERT_TRUE(session_->send(mirror, now_s_));
+  EXPECT_EQ(session_->oldest_in_flight(0), 1u);
+  EXPECT_EQ(session_->oldest_in_flight(3), 1u);
+  VisibleSetFrame of_mirror = keyframe(1, 1, set_of({8, 9}));
+  of_mirror.view = 3;
+  daemon_->send(of_mirror);
+  daemon_->send(keyframe(1, 1, set_of({5})));  // the same numbers, of the other view
+  ASSERT_TRUE(poll_until([&] { return answers_.size() == 2; }));
+  EXPECT_EQ(answers_[0].request.view, 3u);
+  EXPECT_EQ(answers_[0].set, set_of({8, 9}));
+  EXPECT_EQ(answers_[1].request.view, 0u);
+  EXPECT_EQ(answers_[1].set, set_of({5}));
+  EXPECT_FALSE(session_->oldest_in_flight(0));
+
+  mirror.request_seq = 2;
+  ASSERT_TRUE(session_->send(mirror, now_s_));
+  ASSERT_TRUE(daemon_hears<ViewRequest>());  // the first of the view
+  const auto asked = daemon_hears<ViewRequest>();
+  ASSERT_TRUE(asked);
+  EXPECT_EQ(asked->acked_set_seq, 1u);
+  VisibleSetFrame delta = keyframe(2, 2, set_of({9}));
+  delta.view = 3;
+  delta.base_seq = 1;
+  delta.bitmap = encode_delta(set_of({8, 9}), set_of({9}));
+  daemon_->send(delta);
+  ASSERT_TRUE(poll_until([&] { return answers_.size() == 3; }));
+  EXPECT_EQ(answers_[2].set, set_of({9}));
+}
+
+TEST_F(CullingSessionOverLoopback, SaysHelloAgainWhenItIsTold) {
+  ASSERT_TRUE(poll_until([&] { return daemon_->next<Hello>().has_value(); }));
+  daemon_->send(Refusal{RefusalReason::scene_mismatch, "no such scene", k_protocol_version, {}});
+  ASSERT_TRUE(poll_until([&] { return session_->state() == SessionState::refused; }));
+  session_->retry();
+  EXPECT_EQ(session_->state(), SessionState::connecting);
+  welcome(78);
+  session_->retry();  // open: nothing to be done again
+  EXPECT_EQ(session_->state(), SessionState::open);
+}
+
+TEST_F(CullingSessionOverLoopback, AsksWhyAndHandsOutWhatItsSessionIsTold) {
+  EXPECT_FALSE(session_->send_why(5, 0, ObjectId{7}));
+  welcome(77);
+  ASSERT_TRUE(session_->send_why(5, 2, ObjectId{7}));
+  const auto asked = daemon_hears<Why>();
+  ASSERT_TRUE(asked);
+  EXPECT_EQ(*asked, (Why{77, 5, 2, ObjectId{7}}));
+  WhyAnswer answer;
+  answer.session_id = 5;
+  answer.state = WhyState::hidden;
+  daemon_->send(answer);  // of another session
+  answer.session_id = 77;
+  answer.nonce = 5;
+  daemon_->send(answer);
+  std::vector<WhyAnswer> answers;
+  ASSERT_TRUE(poll_until([&] {
+    answers = session_->take_why_answers();
+    return !answers.empty();
+  }));
+  EXPECT_EQ(answers, std::vector<WhyAnswer>{answer});
+}
+
 TEST(CullingSession, ReturnsInTimeWhenNobodyListens) {
   std::string endpoint;
   {

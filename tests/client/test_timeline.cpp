@@ -113,5 +113,19 @@ TEST(HorizonEstimator, BracketsNowFromHalfASecondOn) {
   }
 }
 
+TEST(VisibleSetTimeline, KnowsTheOldestRequestThatMayStillServe) {
+  VisibleSetTimeline timeline;
+  EXPECT_FALSE(timeline.lowest_request_seq(0.0));
+  ViewRequest request;
+  for (const auto& [seq, time_s] : {std::pair<std::uint64_t, double>{4, 1.0}, {2, 3.0}, {3, 2.0}}) {
+    request.request_seq = seq;
+    request.for_time_s = time_s;
+    timeline.file(request, VisibleSet());
+  }
+  EXPECT_EQ(timeline.lowest_request_seq(0.0), 2u);
+  EXPECT_EQ(timeline.lowest_request_seq(3.0), 2u);
+  EXPECT_FALSE(timeline.lowest_request_seq(3.5));
+}
+
 }  // namespace
 }  // namespace sightline
