@@ -18,3 +18,9 @@ function(sightline_library name)
   target_include_directories(sightline_${name} PUBLIC ${PROJECT_SOURCE_DIR})
   target_link_libraries(sightline_${name} PRIVATE sightline_flags)
 endfunction()
+
+# sightline_embeddable(NAME): sightline_NAME may become part of a shared library, and its own names do not leave it.
+function(sightline_embeddable name)
+  set_target_properties(sightline_${name} PROPERTIES
+    POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+endfunction()
