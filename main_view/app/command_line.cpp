@@ -12,11 +12,13 @@
 #include "main_view/app/audit_options.hpp"
 #include "main_view/app/generate_command.hpp"
 #include "main_view/app/info_command.hpp"
+#include "main_view/app/judge_command.hpp"
 #include "main_view/app/option_groups.hpp"
 #include "main_view/app/play_command.hpp"
 #include "main_view/app/play_options.hpp"
 #include "main_view/app/predict_command.hpp"
 #include "main_view/app/view_command.hpp"
+#include "main_view/app/why_command.hpp"
 
 namespace sightline {
 namespace {
@@ -25,10 +27,12 @@ namespace {
 struct CommandLine {
   PlayOptions play;
   AuditOptions audit;
+  JudgeOptions judge;
   ViewOptions view;
   GenerateOptions generate;
   InfoOptions info;
   PredictOptions predict;
+  WhyOptions why;
   std::function<int()> run;
 };
 
@@ -108,6 +112,27 @@ void add_audit(CLI::App& app, CommandLine& line) {
   });
 }
 
+void add_judge(CLI::App& app, CommandLine& line) {
+  auto& command = *app.add_subcommand("judge", "Count wrong pixels of the sets that a client wrote down");
+  auto& options = line.judge;
+  add_scene_options(command, options.scene, true);
+  add_replay_options(command, options.replay);
+  command.add_option("--sets", options.sets, "What was drawn, CSV frame,ids: ids with spaces, or * for all")
+      ->required();
+  command.add_option("--max-wrong-pixels", options.max_wrong_pixels,
+                     "Exit with 1 when the mean share of wrong pixels is above this");
+  command.add_option("--truth", options.truth,
+                     "File that keeps each view's exact visible set for later runs over the same views");
+  command.add_option("--json", options.json, "Report file")->required();
+  command.callback([&line] {
+    line.run = [&options = line.judge] {
+      options.scene.validate();
+      options.replay.validate();
+      return static_cast<int>(run_judge(options));
+    };
+  });
+}
+
 void add_view(CLI::App& app, CommandLine& line) {
   auto& command = *app.add_subcommand("view", "Fly through a scene and look at what the culling does");
   auto& options = line.view;
@@ -120,6 +145,8 @@ void add_view(CLI::App& app, CommandLine& line) {
   command.add_option("--start", options.start_s, "Begin so many seconds into the path [0]");
   command.add_flag("--playing", options.playing, "Follow the path from the start");
   command.add_flag("--frozen", options.frozen, "Freeze the culling and look at it from behind and above");
+  command.add_option("--why", options.why,
+                     "Ask why this object is drawn or not, as a click on it does: id or name");
   command.add_option("--frames", options.frames, "End after N frames");
   command.add_option("--screenshot", options.screenshot, "PNG of the last frame");
   command.callback([&line] {
@@ -163,6 +190,26 @@ void add_predict(CLI::App& app, CommandLine& line) {
   command.callback([&line] { line.run = [&options = line.predict] { return run_predict(options); }; });
 }
 
+void add_why(CLI::App& app, CommandLine& line) {
+  auto& command = *app.add_subcommand("why", "Say why a frame of a path draws an object or does not");
+  auto& options = line.why;
+  add_scene_options(command, options.scene, true);
+  add_service_options(command, options.service);
+  command.add_option("--rate", options.replay.rate_hz, "Frames a second of the path [60]")->type_name("HZ");
+  command.add_option("--start", options.replay.start_s,
+                     "Count frames from so many seconds into the path [0]");
+  command.add_option("--frame", options.frame, "Frame of the path, from 0")->required();
+  command.add_option("--object", options.object, "Id, or name in the scene file")->required();
+  command.callback([&line] {
+    line.run = [&options = line.why] {
+      options.scene.validate();
+      options.replay.validate();
+      options.service.validate(true);
+      return static_cast<int>(run_why(options, std::cout));
+    };
+  });
+}
+
 /// One line, whatever the text holds.
 std::string one_line(std::string text) {
   std::replace(text.begin(), text.end(), '\n', ' ');
@@ -182,10 +229,12 @@ int parse_and_run(int argc, const char* const* argv) {
   app.require_subcommand(1);
   add_play(app, line);
   add_audit(app, line);
+  add_judge(app, line);
   add_view(app, line);
   add_generate(app, line);
   add_predict(app, line);
   add_info(app, line);
+  add_why(app, line);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

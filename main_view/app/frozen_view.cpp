@@ -81,15 +81,20 @@ Eye eye_behind(const Eye& culled_for, double depth_m, ImageSize size) {
           .clip_from_camera = clip_from_camera(lens, double(size.width) / double(size.height))};
 }
 
-gl::DrawStats draw_frozen_view(DrawableScene& scene, Overlay& overlay, const RenderTarget& target,
-                               const Eye& seen_by, const Eye& culled_for, double depth_m,
-                               std::span<const ObjectId> drawn) {
-  const gl::DrawStats stats = scene.renderer().draw(target, seen_by, drawn);
+std::vector<ObjectId> culled_in_frustum(const DrawableScene& scene, const Eye& culled_for,
+                                        std::span<const ObjectId> drawn) {
   const std::vector<ObjectId> in_frustum = scene.ids_in_frustum(culled_for);
   std::vector<ObjectId> culled;
   std::set_difference(in_frustum.begin(), in_frustum.end(), drawn.begin(), drawn.end(),
                       std::back_inserter(culled));
-  for (const ObjectId id : culled) {
+  return culled;
+}
+
+gl::DrawStats draw_frozen_view(DrawableScene& scene, Overlay& overlay, const RenderTarget& target,
+                               const Eye& seen_by, const Eye& culled_for, double depth_m,
+                               std::span<const ObjectId> drawn) {
+  const gl::DrawStats stats = scene.renderer().draw(target, seen_by, drawn);
+  for (const ObjectId id : culled_in_frustum(scene, culled_for, drawn)) {
     overlay.add_box(scene.scene().object_bounds[index_of(id)], scene.scene().world_origin_m,
                     k_culled_box_color, 1.0f);
   }

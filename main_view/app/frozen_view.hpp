@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "main_view/app/drawable_scene.hpp"
 #include "main_view/app/overlay.hpp"
@@ -13,6 +14,10 @@ namespace sightline {
 /// A camera that looks at the frustum of `culled_for` from behind and above it.
 /// `depth_m`: how much of the frustum it should show.
 [[nodiscard]] Eye eye_behind(const Eye& culled_for, double depth_m, ImageSize size);
+
+/// The objects that the frustum of `culled_for` holds but that are not `drawn`, ascending.
+[[nodiscard]] std::vector<ObjectId> culled_in_frustum(const DrawableScene& scene, const Eye& culled_for,
+                                                      std::span<const ObjectId> drawn);
 
 /// The scene as it was culled for one camera, drawn for another (Klimenko, Nikitina and Nikitin, figure 4):
 /// `drawn` objects alone, the frustum of `culled_for` as lines out to `depth_m`, and, faintly, the boxes of

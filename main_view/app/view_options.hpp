@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
 
 #include "main_view/app/common_options.hpp"
 
@@ -20,6 +21,7 @@ struct ViewOptions {
   double start_s = 0.0;                 ///< seconds into the path
   bool playing = false;                 ///< follow the path from the start
   bool frozen = false;                  ///< freeze the culling at once and look at it from behind and above
+  std::string why;                      ///< object to ask about once sets arrive, id or name; empty for none
   std::optional<std::uint32_t> frames;  ///< end after so many
   std::filesystem::path screenshot;     ///< PNG of the last frame; empty for none
 };

@@ -65,10 +65,18 @@ void service_section(const ViewStatus& status) {
   }
 }
 
+void why_section(const ViewStatus& status) {
+  // Names in real scenes are long.
+  ImGui::PushTextWrapPos(34.0f * ImGui::GetFontSize());
+  for (const std::string& line : status.why) ImGui::TextUnformatted(line.c_str());
+  ImGui::PopTextWrapPos();
+}
+
 void help_section() {
   ImGui::TextUnformatted(
       "W A S D  Q E   fly, down and up; Shift: faster\n"
       "right mouse    hold and look around\n"
+      "left mouse     ask why: an object, or a culled one's box while frozen\n"
       "P              follow the path\n"
       "1 2 3 4        none, frustum, service, oracle\n"
       "I  C           item buffer, depth complexity\n"
@@ -113,6 +121,10 @@ void ViewPanel::draw(const ViewStatus& status) {
   frame_section(status);
   ImGui::Separator();
   service_section(status);
+  if (!status.why.empty()) {
+    ImGui::Separator();
+    why_section(status);
+  }
   if (help_) {
     ImGui::Separator();
     help_section();

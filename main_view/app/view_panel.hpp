@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "common/gl/context.hpp"
 #include "common/gl/gpu_scene.hpp"
@@ -30,6 +31,7 @@ struct ViewStatus {
   std::optional<double> last_age_s;
   std::optional<double> next_lead_s;
   std::optional<double> round_trip_s;
+  std::vector<std::string> why;  ///< about the object that was clicked; empty for none
 };
 
 /// Dear ImGui on a window: frame times, what is drawn, the service's state, the keys.

@@ -7,9 +7,12 @@
 #include <utility>
 
 #include <GLFW/glfw3.h>
+#include <glm/gtc/matrix_transform.hpp>
 
 #include "main_view/app/frozen_view.hpp"
 #include "main_view/app/item_colors.hpp"
+#include "main_view/app/pick_drawn.hpp"
+#include "main_view/app/pick_object.hpp"
 
 namespace sightline {
 namespace {
@@ -73,7 +76,9 @@ Viewer::Viewer(const ViewOptions& options, Scene scene, CameraPath path)
       camera_(first_pose(options, path_, scene_.scene())),
       path_s_(options.start_s),
       last_step_s_(now_s()),
-      speed_m_per_s_(speed_for(scene_.scene().bounds)) {
+      speed_m_per_s_(speed_for(scene_.scene().bounds)),
+      why_(scene_.scene()) {
+  if (!options.why.empty()) ask_first_ = find_object(scene_.scene(), options.why);
   status_.culling = options.culling;
   status_.picture = options.picture;
   status_.has_path = !path_.samples.empty();
@@ -97,6 +102,7 @@ bool Viewer::step() {
   const Eye eye{camera_from_world(camera_.pose()), core_.rig().front().clip_from_camera};
   if (connection_) take_answers(start_s);
   if (!frozen_) choose_objects(eye, start_s);
+  if (ask_first_ && status_.fallback.empty()) ask_why(*std::exchange(ask_first_, std::nullopt));
   if (options_.frozen && !frozen_ && status_.fallback.empty()) {
     options_.frozen = false;
     toggle_freeze();
@@ -109,6 +115,7 @@ bool Viewer::step() {
   gl::glFinish();
   status_.draw_ms = 1000.0 * (now_s() - draw_start_s);
   describe_service();
+  status_.why = why_.lines();
   sized_->target.show(sized_->size);
   panel_.draw(status_);
   if (!options_.screenshot.empty()) screenshot_ = read_window(sized_->size);
@@ -174,6 +181,40 @@ void Viewer::handle_mouse() {
     glfwSetInputMode(window, GLFW_CURSOR, held ? GLFW_CURSOR_DISABLED : GLFW_CURSOR_NORMAL);
   looking_ = held;
   cursor_ = cursor;
+  const bool clicking = glfwGetMouseButton(window, GLFW_MOUSE_BUTTON_LEFT) == GLFW_PRESS;
+  const bool clicked = std::exchange(clicking_, clicking);
+  if (clicking && !clicked && !looking_ && !panel_.wants_mouse()) ask_why_under(cursor);
+}
+
+void Viewer::ask_why_under(const std::array<double, 2>& cursor) {
+  int width = 0, height = 0;  // of the window, in the cursor's units
+  glfwGetWindowSize(context_->window(), &width, &height);
+  if (width <= 0 || height <= 0) return;
+  const Eye eye{camera_from_world(camera_.pose()), core_.rig().front().clip_from_camera};
+  const std::optional<ObjectId> id =
+      pick(eye, cursor[0] * sized_->size.width / width, cursor[1] * sized_->size.height / height);
+  if (!id) return why_.forget();
+  ask_why(*id);
+}
+
+void Viewer::ask_why(ObjectId id) {
+  std::optional<ClientVerdict> verdict;
+  if (decision_) {
+    const glm::dmat4 world_from_scene = glm::translate(glm::dmat4(1.0), scene_.scene().world_origin_m);
+    const Aabb bounds = transformed(scene_.scene().object_bounds[index_of(id)], world_from_scene);
+    verdict = verdict_of(id, bounds, {&decided_for_, 1}, *decision_);
+  }
+  why_.ask(id, verdict, connection_ ? &connection_->session() : nullptr);
+}
+
+std::optional<ObjectId> Viewer::pick(const Eye& eye, double x_px, double y_px) {
+  if (frozen_) {
+    const Ray ray = ray_through(eye, sized_->size, x_px, y_px);
+    const auto culled = nearest_box_under(ray, culled_in_frustum(scene_, frozen_->eye, frozen_->drawn),
+                                          scene_.scene().object_bounds, scene_.scene().world_origin_m);
+    if (culled) return culled;
+  }
+  return drawn_under(scene_.gpu(), sized_->items, eye, frozen_ ? frozen_->drawn : drawn_, x_px, y_px);
 }
 
 void Viewer::move_camera(double dt_s) {
@@ -203,6 +244,7 @@ void Viewer::take_answers(double time_s) {
     core_.accept(answer.request, answer.issued_s, answer.set, received_s);
     status_.round_trip_s = received_s - answer.issued_s;
   }
+  why_.take_answer(session);
   if (session.lost_count() != lost_seen_) {
     lost_seen_ = session.lost_count();
     core_.forget_sets();
@@ -211,6 +253,7 @@ void Viewer::take_answers(double time_s) {
 
 void Viewer::choose_objects(const Eye& eye, double time_s) {
   status_.fallback.clear();
+  decision_.reset();
   const std::span<const Eye> eyes(&eye, 1);
   switch (status_.culling) {
     case CullingMode::none:
@@ -237,11 +280,12 @@ void Viewer::choose_with_service(const Eye& eye, double time_s) {
   }
   core_.add_pose({time_s, camera_.pose()});
   connection_->session().send(core_.make_request(time_s, sized_->size), time_s);
-  const FrameDecision decision = core_.decide(time_s, eyes);
-  drawn_ = draw_list_.visible(eyes, decision);
-  status_.fallback = why(decision.fallback);
-  status_.last_age_s = decision.last_age_s;
-  status_.next_lead_s = decision.next_lead_s;
+  decision_ = core_.decide(time_s, eyes);
+  decided_for_ = eye;
+  drawn_ = draw_list_.visible(eyes, *decision_);
+  status_.fallback = why(decision_->fallback);
+  status_.last_age_s = decision_->last_age_s;
+  status_.next_lead_s = decision_->next_lead_s;
 }
 
 void Viewer::draw_picture(const Eye& eye) {

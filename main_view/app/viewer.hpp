@@ -14,6 +14,7 @@
 #include "main_view/app/overlay.hpp"
 #include "main_view/app/service_connection.hpp"
 #include "main_view/app/view_panel.hpp"
+#include "main_view/app/why_question.hpp"
 
 namespace sightline {
 
@@ -48,6 +49,11 @@ class Viewer {
   void follow_window_size();
   void handle_keys();
   void handle_mouse();
+  void ask_why_under(const std::array<double, 2>& cursor);
+  void ask_why(ObjectId id);
+  /// What is under a point of the image, from its upper left corner: while frozen the nearest culled object's
+  /// box, else what is drawn there.
+  [[nodiscard]] std::optional<ObjectId> pick(const Eye& eye, double x_px, double y_px);
   void move_camera(double dt_s);
   [[nodiscard]] bool pressed(int key);
   void choose_objects(const Eye& eye, double time_s);
@@ -74,10 +80,15 @@ class Viewer {
   double speed_m_per_s_ = 5.0;
   std::array<double, 2> cursor_{};
   bool looking_ = false;
+  bool clicking_ = false;
   std::vector<int> keys_down_;
   std::uint64_t lost_seen_ = 0;
 
   std::vector<ObjectId> drawn_;
+  std::optional<FrameDecision> decision_;  ///< that drawn_ comes from, where the daemon's sets decided
+  Eye decided_for_;                        ///< the eye of that decision
+  WhyQuestion why_;
+  std::optional<ObjectId> ask_first_;  ///< as soon as a set is at hand
   std::optional<Frozen> frozen_;
   ViewStatus status_;
   Image screenshot_;

@@ -31,6 +31,7 @@ class Daemon {
   Daemon& operator=(const Daemon&) = delete;
 
   [[nodiscard]] const std::string& endpoint() const noexcept { return endpoint_; }
+  [[nodiscard]] pid_t process_id() const noexcept { return process_id_; }
   /// As a crash would: no goodbye.
   void kill_now();
 
