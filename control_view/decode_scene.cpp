@@ -68,6 +68,21 @@ class BlendedCopies {
 
 }  // namespace
 
+std::string excess_of(const SceneData& data) {
+  std::uint64_t primitives = 0, indices = 0;
+  for (const SceneData::Mesh& mesh : data.meshes) primitives += mesh.primitive_count;
+  for (const SceneData::Primitive& primitive : data.primitives) indices += primitive.index_count;
+  if (primitives > k_most_uses * data.primitives.size()) {
+    return "meshes: they name " + std::to_string(primitives) + " primitives, there are " +
+           std::to_string(data.primitives.size());
+  }
+  if (indices > k_most_uses * data.indices.size()) {
+    return "primitives: they name " + std::to_string(indices) + " indices, there are " +
+           std::to_string(data.indices.size());
+  }
+  return {};
+}
+
 Scene scene_of(SceneData data, const std::string& name) {
   Scene scene;
   scene.positions = std::move(data.positions);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "common/scene/scene.hpp"
@@ -7,6 +8,12 @@
 #include "protocol/scene_data.hpp"
 
 namespace sightline {
+
+/// Why a scene asks for more work than its bytes justify: meshes and primitives are runs, and runs may
+/// overlap, so a few bytes could name billions of triangles. Each list may be used k_most_uses times over.
+/// Empty where all is well. To be asked before triangle_count() and scene_of().
+[[nodiscard]] std::string excess_of(const SceneData& data);
+inline constexpr std::uint64_t k_most_uses = 4;
 
 /// A scene for an engine. Objects that hide nothing, and levels of detail, get blended copies of their
 /// materials: a blended fragment is tested and never an occluder. Spare objects have an empty mesh. The

@@ -83,6 +83,10 @@ BuiltScene SceneBuilder::build(Job job) const {
     }
     SceneData data = std::get<SceneData>(std::move(decoded));
     job.bytes = {};
+    if (std::string excess = excess_of(data); !excess.empty()) {
+      built.result = std::move(excess);
+      return built;
+    }
     if (data.object_count() != job.offer.object_count) {
       built.result = "object_count: the offer says " + std::to_string(job.offer.object_count) +
                      ", the scene has " + std::to_string(data.object_count());

@@ -38,9 +38,8 @@ void SceneIntake::offer(const PeerId& peer, SceneOffer offer, double now_s) {
                             std::to_string(offer.version)));
     return;
   }
-  if (const ServedScenePtr scene = scenes_.find(digest)) {
-    // As good as used: the client is about to open a session on it.
-    scene->last_used_s = now_s;
+  // Offers keep nothing alive, neither scenes nor uploads: only sessions and new chunks do.
+  if (scenes_.find(digest) != nullptr) {
     tell(peer, state_of(digest, SceneState::ready));
     return;
   }
@@ -59,10 +58,10 @@ void SceneIntake::offer(const PeerId& peer, SceneOffer offer, double now_s) {
     upload.scene.byte_count = offer.byte_count;
     upload.sent_by.resize(offer.chunk_digests.size());
     upload.offer = std::move(offer);
+    upload.heard_s = now_s;
     known = uploads_.emplace(digest, std::move(upload)).first;
   }
   Upload& upload = known->second;
-  upload.heard_s = now_s;
   if (upload.peers.size() < k_most_peers) upload.peers.insert(peer);
   tell(peer, status_of(upload, true));
 }
@@ -102,8 +101,8 @@ void SceneIntake::take(const PeerId& peer, const SceneChunk& chunk, double now_s
                         "chunk " + std::to_string(chunk.index) + " is not as long as the offer says"));
     return;
   }
-  upload.heard_s = now_s;
   if (upload.held.contains(chunk.index)) return;
+  upload.heard_s = now_s;
   std::memcpy(upload.scene.bytes.get() + std::size_t{chunk.index} * k_scene_chunk_bytes, chunk.bytes.data(),
               chunk.bytes.size());
   upload.held.add(chunk.index);

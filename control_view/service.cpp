@@ -73,7 +73,20 @@ void Service::step(std::chrono::milliseconds timeout) {
 
 void Service::step_intake() {
   intake_->step(clock_());
-  for (SceneIntake::Notice& notice : intake_->take_notices()) send(notice.peer, std::move(notice.status));
+  for (SceneIntake::Notice& notice : intake_->take_notices()) {
+    log_status(notice.status);
+    send(notice.peer, std::move(notice.status));
+  }
+}
+
+/// What becomes of scenes, for whoever runs the daemon; progress is the client's to show.
+void Service::log_status(const SceneStatus& status) {
+  const std::string scene = to_hex(status.scene_digest);
+  if (status.state == SceneState::uploading || !log_limit_.take("scene " + scene, clock_())) return;
+  if (status.state == SceneState::building)
+    spdlog::info("scene {}: {} chunks are there", scene, status.chunk_count);
+  if (status.state == SceneState::ready) spdlog::info("scene {} is ready", scene);
+  if (status.state == SceneState::failed) spdlog::warn("scene {} not taken: {}", scene, status.text);
 }
 
 bool Service::drain(std::chrono::milliseconds timeout) {
@@ -169,12 +182,12 @@ void Service::handle(const PeerId& peer, Hello&& hello) {
   const ServedScenePtr scene = scenes_.find(hello.scene_digest);
   if (scene == nullptr) {
     const std::string wanted = to_hex(hello.scene_digest);
-    return refuse(
-        peer, RefusalReason::scene_mismatch,
-        scenes_.own() == nullptr || intake_ != nullptr
-            ? fmt::format("this daemon has no scene {}{}", wanted, intake_ == nullptr ? "" : ": offer it")
-            : fmt::format("this daemon serves scene {}, not {}", to_hex(scenes_.own()->identity.digest),
-                          wanted));
+    return refuse(peer, RefusalReason::scene_mismatch,
+                  scenes_.own() == nullptr || intake_ != nullptr
+                      ? fmt::format("this daemon has no scene {}{}", wanted,
+                                    intake_ == nullptr ? "" : ": offer it, or start the daemon with its file")
+                      : fmt::format("this daemon serves scene {}, not {}",
+                                    to_hex(scenes_.own()->identity.digest), wanted));
   }
   const Session* session =
       sessions_.open(peer, hello.client_name, scene, options_.pipeline, clock_, clock_());

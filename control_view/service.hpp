@@ -86,6 +86,7 @@ class Service {
   void refuse_malformed(const PeerId& peer, const std::string& why);
   void send(const PeerId& peer, const Message& message);
   void step_intake();
+  void log_status(const SceneStatus& status);
   [[nodiscard]] std::uint32_t most_objects() const noexcept;
   [[nodiscard]] std::size_t largest_frame_without_session() const noexcept;
 

@@ -23,6 +23,9 @@ EncodedSet encode_against(const VisibleSet* held, std::uint64_t held_seq, const 
   return {held_seq, encode_delta(*held, set)};
 }
 
+/// Of a group of levels of detail; more levels than any thing has.
+constexpr std::size_t k_most_members_explained = 8;
+
 PipelineOptions with_size(PipelineOptions options, ImageSize size) {
   options.size = size;
   return options;
@@ -113,7 +116,10 @@ VisibleSetFrame SessionView::answer(ServedScene& scene, const SceneEdits& edits,
 WhyAnswer SessionView::why(const Why& question, ServedScene& scene, const SceneEdits& edits) {
   const SceneEdits& seen_edits = edits_for(kind_, scene, edits);
   std::optional<WhyAnswer> strongest;
+  // Each is a look of its own, and a group may have as many members as the scene has objects.
+  std::size_t looks = 0;
   for (const ObjectId member : scene.roles.members_of(question.object_id)) {
+    if (looks++ == k_most_members_explained) break;
     Why of_member = question;
     of_member.object_id = member;
     WhyAnswer answer = explain(of_member, pipeline_, boxed_, seen_edits, *scene.engine);

@@ -158,8 +158,8 @@ Fault fault_of_view(std::uint8_t view) {
   return "view: " + std::to_string(view) + ", must be below " + std::to_string(k_max_views);
 }
 
-bool is_control_size(const ImageSize& size) {
-  return is_image_size(size) && std::uint64_t{size.width} * size.height <= k_max_control_pixels;
+bool is_control_size(const ImageSize& size, std::size_t eyes) {
+  return is_image_size(size) && eyes * std::uint64_t{size.width} * size.height <= k_max_control_pixels;
 }
 
 Fault fault_of(const ViewRequest& message) {
@@ -173,7 +173,7 @@ Fault fault_of(const ViewRequest& message) {
   if (Fault fault = fault_of_boxed(message.boxed)) return fault;
   if (message.view >= k_max_views) return fault_of_view(message.view);
   if (message.view_kind > ViewKind::shadow_map) return "view_kind: unknown";
-  if (!is_control_size(message.control_size))
+  if (!is_control_size(message.control_size, message.eyes.size()))
     return "control_size: not an image size, or above " + std::to_string(k_max_control_pixels) + " pixels";
   return fault_of_ids(message.presence, "presence");
 }

@@ -48,7 +48,8 @@ Explanation ItemBufferExplainer::explain(gl::GpuScene& scene, const ObjectHierar
   for (const std::uint32_t scale : k_scales) {
     ViewQuery finer = query;
     finer.size = {query.size.width * scale, query.size.height * scale};
-    if (scale > 1 && finer.size.pixel_count() > k_most_pixels) break;
+    const bool too_long = finer.size.width > k_max_image_side || finer.size.height > k_max_image_side;
+    if (scale > 1 && (too_long || finer.size.pixel_count() > k_most_pixels)) break;
     explanation.scale = scale;
     if (!buffer_) buffer_.emplace(finer.size);
     if (buffer_->size() != finer.size) buffer_->resize(finer.size);

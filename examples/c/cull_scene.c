@@ -37,7 +37,9 @@ int main(int argc, char** argv) {
   options.endpoint = argc > 1 ? argv[1] : "tcp://127.0.0.1:5571";
   if (sl_connect(&options, &client)) return failed("connecting");
   sl_scene_destroy(scene);
-  if (sl_wait_open(client, 10.0) != SL_OK) fputs("no daemon yet: drawing all in view\n", stderr);
+  sl_state state = {.struct_size = sizeof state};
+  if (sl_wait_open(client, 10.0) != SL_OK && sl_get_state(client, &state) == SL_OK)
+    fprintf(stderr, "drawing all in view: %s\n", state.text[0] ? state.text : "no daemon yet");
 
   const double start_s = seconds_now();
   for (int i = 0; i < frames; ++i) {

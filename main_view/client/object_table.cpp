@@ -279,6 +279,14 @@ void ObjectTable::set_flags(ObjectId id, std::uint32_t flags) {
   put_flags(id, flags);
 }
 
+/// The daemon goes on treating an id as the scene says: a proxy's is in no set, whoever has it now.
+bool ObjectTable::may_be_reused(ObjectId id) const noexcept {
+  if (index_of(id) >= scene_->objects.size()) return true;
+  const SceneObject& object = scene_->objects[index_of(id)];
+  return object.group == 0 && !has(object.flags, ObjectFlag::occluder_only) &&
+         !has(object.flags, ObjectFlag::casts_no_shadow);
+}
+
 void ObjectTable::put_flags(ObjectId id, std::uint32_t flags) {
   flags_[index_of(id)] = flags;
   const auto at = std::lower_bound(always_visible_.begin(), always_visible_.end(), id);
@@ -305,7 +313,7 @@ void ObjectTable::take_edits(ObjectEdits& edits) {
     const bool in_scene = index_of(id) < scene_->objects.size();
     if (!state.declared && in_scene) edits.declared.push_back(as_in_scene(id));
     state.declared = true;
-    if (state.removed) edits.removed.push_back(id);
+    if (state.removed && may_be_reused(id)) edits.removed.push_back(id);
     if (!state.present() && !state.told_absent) edits.hidden.push_back(id);
     if (state.present() && state.told_absent) edits.shown.push_back(id);
     state.told_absent = !state.present();

@@ -86,6 +86,7 @@ class ObjectTable {
   State& touch(ObjectId id);
   void place(ObjectId id);
   void put_flags(ObjectId id, std::uint32_t flags);
+  [[nodiscard]] bool may_be_reused(ObjectId id) const noexcept;
   void mind_lists(ObjectId id);
   void gather_groups();
   [[nodiscard]] MovedObject as_it_is(ObjectId id) const;

@@ -238,6 +238,32 @@ TEST(SceneIntake, SaysWhyNoSceneCanBeMade) {
   EXPECT_EQ(daemon.scenes.size(), 0u);
 }
 
+TEST(SceneIntake, RefusesRunsThatNameFarMoreThanThereIs) {
+  Intake daemon;
+  SceneData meshes = bulky_scene(18);
+  meshes.meshes.resize(100'000, SceneData::Mesh{0, 1});
+  daemon.send(k_honest, Parcel(meshes));
+  EXPECT_NE(daemon.last_told(k_honest).text.find("meshes"), std::string::npos);
+  SceneData primitives = bulky_scene(19);
+  primitives.primitives.resize(100'000, SceneData::Primitive{0, 6, 0});
+  daemon.send(k_honest, Parcel(primitives));
+  EXPECT_NE(daemon.last_told(k_honest).text.find("primitives"), std::string::npos);
+}
+
+TEST(SceneIntake, IsNotKeptFullByOffersAlone) {
+  Intake daemon;
+  const Parcel parcel(bulky_scene(20));
+  daemon.intake.offer(k_honest, parcel.offer, daemon.now_s);
+  daemon.intake.take(k_honest, parcel.chunk(0), daemon.now_s);
+  daemon.now_s += 0.9 * SceneIntake::k_idle_s;
+  daemon.intake.offer(k_other, parcel.offer, daemon.now_s);
+  daemon.intake.take(k_other, parcel.chunk(0), daemon.now_s);  // held already
+  daemon.now_s += 0.2 * SceneIntake::k_idle_s;
+  daemon.intake.step(daemon.now_s);
+  daemon.intake.offer(k_honest, parcel.offer, daemon.now_s);
+  EXPECT_EQ(daemon.last_told(k_honest).chunks_held, 0u);
+}
+
 TEST(SceneIntake, DropsChunksOfAnotherLengthOrNumber) {
   Intake daemon;
   const Parcel parcel(bulky_scene(16));

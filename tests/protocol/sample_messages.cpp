@@ -76,8 +76,8 @@ ViewRequest random_request(std::mt19937_64& random) {
   message.view = static_cast<std::uint8_t>(random() % k_max_views);
   message.view_kind = random() % 2 == 0 ? ViewKind::image : ViewKind::shadow_map;
   if (random() % 2 == 0) {
-    message.control_size = {static_cast<std::uint32_t>(1 + random() % 2000),
-                            static_cast<std::uint32_t>(1 + random() % 2000)};
+    message.control_size = {static_cast<std::uint32_t>(1 + random() % 1000),
+                            static_cast<std::uint32_t>(1 + random() % 1000)};
   }
   return message;
 }

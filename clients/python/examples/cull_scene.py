@@ -17,6 +17,8 @@ import time
 
 import sightline
 
+MOST_UNANSWERED = 3  # frames in a row; then the daemon is gone, and the rest would wait in vain
+
 
 def main():
     options = parse()
@@ -46,15 +48,21 @@ def run(options):
               f"{upload.chunks_sent if upload else 0} of {len(data.offer.chunk_digests) // 16} chunks sent")
         out.write("frame,ids\n")
         frames = range(0, math.floor(path.duration_s * options.rate + 1e-6) + 1, options.every)
-        objects = triangles = unanswered = 0
+        objects = triangles = unanswered = unanswered_in_a_row = 0
         began = time.monotonic()
         for frame in frames:
             visible = culler.ask(path.at(frame / options.rate), lens, options.size, timeout_s=options.timeout,
                                  control_size=options.control_size)
             if visible is None:
                 unanswered += 1
+                unanswered_in_a_row += 1
                 out.write(f"{frame},*\n")
+                out.flush()
+                print(f"frame {frame}: no answer from {options.connect} within {options.timeout:g} s", file=sys.stderr)
+                if unanswered_in_a_row == MOST_UNANSWERED:
+                    raise sightline.SightlineError(f"{options.connect} has stopped answering; frames from {frame} on are missing")
                 continue
+            unanswered_in_a_row = 0
             out.write(f"{frame},{' '.join(map(str, visible.ids))}\n")
             objects += len(visible)
             triangles += int(data.triangles[visible.ids].sum())
@@ -69,7 +77,22 @@ def run(options):
 
 def image_size(text):
     width, _, height = text.partition("x")
+    if not (width.isdigit() and height.isdigit()):
+        raise argparse.ArgumentTypeError(f"must be WxH pixels, not '{text}'")
     return int(width), int(height)
+
+
+def whole_image_size(text):
+    size = image_size(text)
+    if 0 in size:
+        raise argparse.ArgumentTypeError(f"must have sides from 1, not '{text}'")
+    return size
+
+
+def from_one(text):
+    if not text.isdigit() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"must be a number from 1, not '{text}'")
+    return int(text)
 
 
 def parse():
@@ -80,13 +103,13 @@ def parse():
     parser.add_argument("--names", help="file for the name of each id")
     parser.add_argument("--connect", default="tcp://127.0.0.1:5571", help="endpoint of control_view [%(default)s]")
     parser.add_argument("--digest", help="of the scene as main_view info prints it: the daemon has the same file")
-    parser.add_argument("--size", type=image_size, default=(1024, 768), help="image, WxH pixels [1024x768]")
+    parser.add_argument("--size", type=whole_image_size, default=(1024, 768), help="image, WxH pixels [1024x768]")
     parser.add_argument("--control-size", type=image_size, help="image the daemon looks at, 0x0 for its own [--size]")
     parser.add_argument("--fov", type=float, default=60.0, help="vertical field of view, degrees [60]")
     parser.add_argument("--near", type=float, default=0.1, help="near plane, metres [0.1]")
     parser.add_argument("--far", type=float, default=10000.0, help="far plane, metres, or inf [10000]")
     parser.add_argument("--rate", type=float, default=60.0, help="frames a second of the path [60]")
-    parser.add_argument("--every", type=int, default=1, help="every N-th frame only [1]")
+    parser.add_argument("--every", type=from_one, default=1, help="every N-th frame only [1]")
     parser.add_argument("--timeout", type=float, default=30.0, help="seconds to wait for the daemon [30]")
     return parser.parse_args()
 

@@ -80,6 +80,12 @@ void add_objects(CullingClient& client, std::vector<std::uint32_t>& flags_of_obj
   std::vector<ObjectId> added;
   added.reserve(count);
   const std::vector<SceneObject> described = scene_objects_of(objects, count, row_major);
+  for (const SceneObject& object : described) {
+    // Before the first id is taken: a call that fails changes nothing.
+    if (object.group != 0) fail(SL_ERROR_ARGUMENT, "objects: an added object cannot be of a group");
+    if (has(object.flags, ObjectFlag::occluder_only))
+      fail(SL_ERROR_ARGUMENT, "objects: an added object hides nothing, so it cannot be a proxy");
+  }
   const auto take_back = [&] {
     for (const ObjectId id : added) client.remove_object(id);
   };
