@@ -94,15 +94,15 @@ ViewId CullingClient::add_view(const ViewOptions& options) {
   return id;
 }
 
-void CullingClient::remove_view(ViewId id) {
-  ViewTrack& track = impl_->view(id);
-  impl_->next_request[index_of(id)] = track.core().next_request_seq();
-  impl_->frame.views_[index_of(id)] = nullptr;
-  impl_->views[index_of(id)].reset();
+void CullingClient::remove_view(ViewId view) {
+  ViewTrack& track = impl_->view(view);
+  impl_->next_request[index_of(view)] = track.core().next_request_seq();
+  impl_->frame.views_[index_of(view)] = nullptr;
+  impl_->views[index_of(view)].reset();
 }
 
-void CullingClient::set_view_sizes(ViewId id, ImageSize main_size, ImageSize control_size) {
-  ViewTrack& track = impl_->view(id);
+void CullingClient::set_view_sizes(ViewId view, ImageSize main_size, ImageSize control_size) {
+  ViewTrack& track = impl_->view(view);
   require_sizes(main_size, control_size);
   track.set_sizes(main_size, control_size);
 }

@@ -26,7 +26,7 @@ inline constexpr double k_pump_interval_s = 0.001;
 
 /// A client's parts, and a frame's way through them. For culling_client*.cpp alone.
 struct CullingClient::Impl {
-  Impl(ClientOptions given, std::shared_ptr<const SceneObjects> scene,
+  Impl(ClientOptions given, const std::shared_ptr<const SceneObjects>& scene,
        std::shared_ptr<const PackedScene> packed)
       : options(std::move(given)),
         objects(scene),
