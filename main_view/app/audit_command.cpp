@@ -14,6 +14,7 @@
 #include "common/statistics.hpp"
 #include "main_view/app/depth_complexity.hpp"
 #include "main_view/app/draw_list.hpp"
+#include "main_view/app/find_truth.hpp"
 #include "main_view/app/frame_judge.hpp"
 #include "main_view/app/progress.hpp"
 #include "main_view/app/quality.hpp"
@@ -86,7 +87,7 @@ class Audit {
     const double now_s = virtual_seconds(frame);
     const FrameDecision decision = core_.decide(now_s, eyes);
     const bool thorough = frame % k_thorough_every == 0;
-    const FrameTruth& truth = find_truth(eyes, thorough);
+    const FrameTruth& truth = find_truth(judge_, known_truth_, eyes, thorough);
     const std::vector<ObjectId>& drawn = draw_list_.visible(eyes, decision);
     if (thorough) measure_layers(eyes, truth.in_frustum, drawn);
     FrameRecord record{path_s, judge_.judge(eyes, drawn), decision.fallback != Fallback::none,
@@ -153,19 +154,6 @@ class Audit {
     daemon_.issue(core_.make_request(now_s, options_.scene.size), now_s);
     take_deliveries(now_s);  // with no latency the answer to this very frame's request is here already
     return eyes_of(head, core_.rig());
-  }
-
-  /// Every frame's truth is drawn once; a thorough one again, which puts what was known to the test.
-  const FrameTruth& find_truth(std::span<const Eye> eyes, bool thorough) {
-    const std::vector<ObjectId>* known = known_truth_.find(eyes);
-    if (known != nullptr && !thorough) return judge_.recall(eyes, *known);
-    const FrameTruth& truth = judge_.look(
-        eyes, thorough ? FrameJudge::Thoroughness::everything : FrameJudge::Thoroughness::in_frustum);
-    if (known != nullptr && *known != truth.visible) {
-      throw InputError("--truth: " + options_.truth.string() + " does not hold what is drawn now; remove it");
-    }
-    known_truth_.add(eyes, truth.visible);
-    return truth;
   }
 
   /// Asks again when the session was lost on the way: a daemon that --connect found may have closed it while

@@ -8,6 +8,7 @@
 
 #include "common/camera_path.hpp"
 #include "common/scene/load_scene.hpp"
+#include "main_view/app/find_truth.hpp"
 #include "main_view/app/frame_judge.hpp"
 #include "main_view/app/progress.hpp"
 #include "main_view/app/quality.hpp"
@@ -45,7 +46,7 @@ class SetsJudge {
     const double rate_hz = options_.replay.rate_hz;
     const double path_s = (options_.replay.start_s * rate_hz + set.frame) / rate_hz;
     const std::vector<Eye> eyes = eyes_of(path_.at(path_s), rig_);
-    const FrameTruth& truth = find_truth(eyes, index % k_thorough_every == 0);
+    const FrameTruth& truth = find_truth(judge_, known_truth_, eyes, index % k_thorough_every == 0);
     // Every client has a view frustum of its own: what lies outside is in no image.
     std::vector<ObjectId> drawn = truth.in_frustum;
     if (!set.everything) {
@@ -85,18 +86,6 @@ class SetsJudge {
   }
 
  private:
-  const FrameTruth& find_truth(std::span<const Eye> eyes, bool thorough) {
-    const std::vector<ObjectId>* known = known_truth_.find(eyes);
-    if (known != nullptr && !thorough) return judge_.recall(eyes, *known);
-    const FrameTruth& truth = judge_.look(
-        eyes, thorough ? FrameJudge::Thoroughness::everything : FrameJudge::Thoroughness::in_frustum);
-    if (known != nullptr && *known != truth.visible) {
-      throw InputError("--truth: " + options_.truth.string() + " does not hold what is drawn now; remove it");
-    }
-    known_truth_.add(eyes, truth.visible);
-    return truth;
-  }
-
   JudgeOptions options_;
   CameraPath path_;
   Scene scene_;

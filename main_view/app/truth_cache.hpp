@@ -32,6 +32,8 @@ class TruthCache {
   /// holds something else or is damaged.
   TruthCache(std::filesystem::path file, const Subject& subject);
 
+  [[nodiscard]] const std::filesystem::path& file() const noexcept { return file_; }
+
   /// The visible objects, ascending; null where nobody has looked. Valid until the next add.
   [[nodiscard]] const std::vector<ObjectId>* find(std::span<const Eye> eyes) const;
   void add(std::span<const Eye> eyes, const std::vector<ObjectId>& visible);
