@@ -26,11 +26,6 @@ std::vector<RigEye> rig_of(const WorldSetup& setup) {
           {glm::translate(glm::dmat4(1.0), -half), projection}};
 }
 
-std::unique_ptr<Session> new_session(std::uint64_t id, const ServedScenePtr& scene, const WorldSetup& setup) {
-  return std::make_unique<Session>(
-      id, PeerId{}, "virtual client", scene, setup.pipeline, [] { return 0.0; }, 0.0);
-}
-
 }  // namespace
 
 WorldSetup world_setup(const std::string& engine, double latency_s) {
@@ -60,9 +55,9 @@ MovingWorld::MovingWorld(const Scene& scene, const std::vector<Actor>& actors, c
       hierarchy_(scene.object_bounds),
       draw_list_(hierarchy_, scene.world_origin_m),
       core_(setup.culling, rig_of(setup)),
-      daemon_([this](const ViewRequest& request) { return ask(request); }, setup.control_rate_hz,
+      daemon_([this](const ViewRequest& request) { return session_->ask(request); }, setup.control_rate_hz,
               setup.latency_s) {
-  session_ = new_session(++session_id_, served_, setup_);
+  session_ = std::make_unique<InProcessSession>(++session_id_, served_, setup_.pipeline);
   const glm::dmat4 world_from_scene = glm::translate(glm::dmat4(1.0), scene.world_origin_m);
   std::vector<MovedObject> declared;
   for (const Actor& actor : actors) {
@@ -79,30 +74,8 @@ MovedObject MovingWorld::moved(ObjectId id, const glm::dmat4& placement) const {
 }
 
 void MovingWorld::lose_the_daemon() {
-  session_ = new_session(++session_id_, served_, setup_);
-  sets_.clear();
+  session_ = std::make_unique<InProcessSession>(++session_id_, served_, setup_.pipeline);
   core_.forget_sets();
-}
-
-Answer MovingWorld::ask(const ViewRequest& issued) {
-  ViewRequest request = issued;
-  request.session_id = session_id_;
-  request.acked_set_seq = sets_.acked_seq();
-  session_->accept(request, 0.0);
-  VisibleSetFrame frame = session_->answer(0.0);
-  std::optional<VisibleSet> set = sets_.decode(frame, scene_.object_count());
-  if (!set) throw std::logic_error("the daemon's answer does not decode");
-  Answer answer;
-  answer.request = issued;
-  answer.set = std::move(*set);
-  answer.frame = std::move(frame);
-  return answer;
-}
-
-void MovingWorld::take_deliveries(double now_s) {
-  for (const VirtualDaemon::Delivery& delivery : daemon_.deliver(now_s)) {
-    core_.accept(delivery.answer.request, delivery.issued_s, delivery.answer.set, delivery.received_s);
-  }
 }
 
 void MovingWorld::move_actors(double now_s) {
@@ -133,12 +106,13 @@ void MovingWorld::move_actors(double now_s) {
 
 WorldFrame MovingWorld::step(const Pose& head) {
   const double now_s = frame_++ / setup_.frame_rate_hz;
-  take_deliveries(now_s);
+  take_deliveries(daemon_, core_, now_s);
   core_.add_pose({now_s, head});
   move_actors(now_s);
   const ViewRequest request = core_.make_request(now_s, setup_.main_size);
   daemon_.issue(request, now_s);
-  take_deliveries(now_s);  // with no latency the answer to this very frame's request is here already
+  take_deliveries(daemon_, core_,
+                  now_s);  // with no latency the answer to this very frame's request is here already
 
   const std::vector<Eye> eyes = eyes_of(head, core_.rig());
   const FrameDecision decision = core_.decide(now_s, eyes);

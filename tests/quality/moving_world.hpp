@@ -10,11 +10,10 @@
 
 #include "common/object_hierarchy.hpp"
 #include "common/scene/scene.hpp"
-#include "control_view/session.hpp"
 #include "main_view/app/draw_list.hpp"
 #include "main_view/app/virtual_daemon.hpp"
 #include "main_view/client/culling_core.hpp"
-#include "main_view/client/session_sets.hpp"
+#include "tests/quality/in_process_session.hpp"
 
 namespace sightline::testing {
 
@@ -62,8 +61,6 @@ class MovingWorld {
   void lose_the_daemon();
 
  private:
-  Answer ask(const ViewRequest& request);
-  void take_deliveries(double now_s);
   void move_actors(double now_s);
   [[nodiscard]] MovedObject moved(ObjectId id, const glm::dmat4& placement) const;
 
@@ -72,8 +69,7 @@ class MovingWorld {
   WorldSetup setup_;
   ServedScenePtr served_;
   std::unique_ptr<VisibilityEngine> judge_;
-  std::unique_ptr<Session> session_;
-  SessionSets sets_;
+  std::unique_ptr<InProcessSession> session_;
   std::uint64_t session_id_ = 0;
   ObjectHierarchy hierarchy_;
   DrawListBuilder draw_list_;

@@ -58,43 +58,21 @@ VirtualService::VirtualService(const Scene& scene, const ServiceSetup& setup)
     : scene_(scene),
       setup_(setup),
       judge_(one_threaded_raster(scene)),
-      session_(
-          k_session_id, PeerId{}, "virtual client",
-          served_scene({scene.digest, scene.object_count()}, one_threaded_raster(scene)), setup.pipeline,
-          [] { return 0.0; }, 0.0),
+      session_(k_session_id, served_scene({scene.digest, scene.object_count()}, one_threaded_raster(scene)),
+               setup.pipeline),
       hierarchy_(scene.object_bounds),
       draw_list_(hierarchy_, scene.world_origin_m),
       core_(setup.culling, rig_of(setup)),
-      daemon_([this](const ViewRequest& request) { return ask(request); }, setup.control_rate_hz,
+      daemon_([this](const ViewRequest& request) { return session_.ask(request); }, setup.control_rate_hz,
               setup.latency_s) {}
-
-Answer VirtualService::ask(const ViewRequest& issued) {
-  ViewRequest request = issued;
-  request.session_id = k_session_id;
-  request.acked_set_seq = sets_.acked_seq();
-  session_.accept(request, 0.0);
-  VisibleSetFrame frame = session_.answer(0.0);
-  std::optional<VisibleSet> set = sets_.decode(frame, scene_.object_count());
-  if (!set) throw std::logic_error("the daemon's answer does not decode");
-  Answer answer;
-  answer.request = issued;
-  answer.set = std::move(*set);
-  answer.frame = std::move(frame);
-  return answer;
-}
-
-void VirtualService::take_deliveries(double now_s) {
-  for (const VirtualDaemon::Delivery& delivery : daemon_.deliver(now_s)) {
-    core_.accept(delivery.answer.request, delivery.issued_s, delivery.answer.set, delivery.received_s);
-  }
-}
 
 FrameOutcome VirtualService::step(const Pose& head) {
   const double now_s = frame_++ / setup_.frame_rate_hz;
-  take_deliveries(now_s);
+  take_deliveries(daemon_, core_, now_s);
   core_.add_pose({now_s, head});
   daemon_.issue(core_.make_request(now_s, setup_.main_size), now_s);
-  take_deliveries(now_s);  // with no latency the answer to this very frame's request is here already
+  take_deliveries(daemon_, core_,
+                  now_s);  // with no latency the answer to this very frame's request is here already
 
   eyes_ = eyes_of(head, core_.rig());
   const FrameDecision decision = core_.decide(now_s, eyes_);

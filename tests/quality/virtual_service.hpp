@@ -13,11 +13,10 @@
 #include "common/object_hierarchy.hpp"
 #include "common/scene/scene.hpp"
 #include "common/view.hpp"
-#include "control_view/session.hpp"
 #include "main_view/app/draw_list.hpp"
 #include "main_view/app/virtual_daemon.hpp"
 #include "main_view/client/culling_core.hpp"
-#include "main_view/client/session_sets.hpp"
+#include "tests/quality/in_process_session.hpp"
 
 namespace sightline::testing {
 
@@ -98,14 +97,10 @@ class VirtualService {
   [[nodiscard]] const PixelCounts& truth() const noexcept { return truth_; }
 
  private:
-  Answer ask(const ViewRequest& request);
-  void take_deliveries(double now_s);
-
   const Scene& scene_;
   ServiceSetup setup_;
   std::unique_ptr<VisibilityEngine> judge_;
-  Session session_;
-  SessionSets sets_;
+  InProcessSession session_;
   ObjectHierarchy hierarchy_;
   DrawListBuilder draw_list_;
   CullingCore core_;
