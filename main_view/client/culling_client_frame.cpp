@@ -73,14 +73,15 @@ void CullingClient::Impl::poll() {
 }
 
 void CullingClient::Impl::file_answers(double received_s) {
-  for (const Answer& answer : answers) {
+  for (Answer& answer : answers) {
     const std::uint8_t view = answer.request.view;
     if (awaited[view] != 0 && answer.request.request_seq >= awaited[view]) awaited[view] = 0;
     ++statistics.answers;
     statistics.daemon_times = answer.frame.times;
     statistics.daemon_drawn_objects = answer.frame.drawn_objects;
     round_trip.add(std::max(received_s - answer.issued_s, 0.0));
-    if (views[view]) views[view]->core().accept(answer.request, answer.issued_s, answer.set, received_s);
+    if (!views[view]) continue;
+    views[view]->core().accept(std::move(answer.request), answer.issued_s, std::move(answer.set), received_s);
   }
   answers.clear();
   const std::uint64_t lost = connection.session().lost_count();
