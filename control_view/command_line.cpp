@@ -29,11 +29,13 @@ struct ServeArguments {
   std::vector<std::pair<std::string_view, std::string>> given;
 
   void declare(CLI::App& app) {
+    const DaemonOptions defaults;
     for (const OptionField& field : daemon_option_fields()) {
       app.add_option_function<std::string>(
-          "--" + dashed(field.name),
-          [this, name = field.name](const std::string& text) { given.emplace_back(name, text); },
-          std::string(field.help));
+             "--" + dashed(field.name),
+             [this, name = field.name](const std::string& text) { given.emplace_back(name, text); },
+             std::string(field.help))
+          ->default_str(field.show(defaults));
     }
     app.add_option("--config", config, "TOML file of the same options, with _ for -");
     app.add_option("--preset", preset, "avango (the paper's pipeline) or default");
@@ -109,9 +111,11 @@ Command parse_command_line(const std::vector<std::string>& arguments) {
   CLI::App app("Sightline's daemon: tells renderers which objects can be seen.", "control_view");
   app.set_version_flag("--version", std::string("control_view ") + k_version);
   app.require_subcommand(1);
+  app.option_defaults()->always_capture_default();
 
   ServeArguments serve_arguments;
-  CLI::App* const serve = app.add_subcommand("serve", "answer clients until stopped (the default)");
+  CLI::App* const serve =
+      app.add_subcommand("serve", "answer clients until stopped; the default, whose name may be left out");
   serve_arguments.declare(*serve);
   CLI::App* const engines = app.add_subcommand("engines", "list the engines and counters of this build");
   BenchArguments bench_arguments;
@@ -134,7 +138,9 @@ Command parse_command_line(const std::vector<std::string>& arguments) {
   } catch (const CLI::CallForVersion& version) {
     return PrintCommand{std::string(version.what()) + "\n"};
   } catch (const CLI::CallForHelp&) {
-    return PrintCommand{app.help()};
+    // Who names no subcommand serves, and wants to know with what.
+    const bool of_all = app.get_subcommands().empty();
+    return PrintCommand{of_all ? app.help() + "\n" + serve->help() : app.help()};
   } catch (const CLI::ParseError& error) {
     throw InputError(one_line(error.what()) + " (see control_view --help)");
   }

@@ -48,6 +48,8 @@ struct OptionField {
   std::string_view help;
   /// Reads and checks the text. Throws InputError that says what the value must be.
   void (*set)(DaemonOptions& options, const std::string& text);
+  /// Text that `set` reads as what it is now; empty for nothing.
+  std::string (*show)(const DaemonOptions& options);
 };
 
 [[nodiscard]] std::span<const OptionField> daemon_option_fields();

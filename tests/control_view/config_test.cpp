@@ -1,5 +1,6 @@
 #include "control_view/config.hpp"
 
+#include <algorithm>
 #include <variant>
 
 #include <gmock/gmock.h>
@@ -184,8 +185,30 @@ TEST(CommandLine, PrintsHelpOfEveryCommand) {
        {std::vector<std::string>{"--help"}, {"serve", "--help"}, {"bench", "--help"}, {"--version"}}) {
     EXPECT_FALSE(std::get<PrintCommand>(parse_command_line(arguments)).text.empty());
   }
-  EXPECT_THAT(std::get<PrintCommand>(parse_command_line({"serve", "--help"})).text,
-              HasSubstr("--max-sessions"));
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"--help"}, {"serve", "--help"}}) {
+    const std::string help = std::get<PrintCommand>(parse_command_line(arguments)).text;
+    for (const OptionField& field : daemon_option_fields()) {
+      std::string option = "--" + std::string(field.name);
+      std::replace(option.begin() + 2, option.end(), '_', '-');
+      EXPECT_THAT(help, HasSubstr(option + " "));
+    }
+    EXPECT_THAT(help, HasSubstr("512x384"));
+  }
+}
+
+TEST(DaemonOptions, AreShownAsTheyCanBeSet) {
+  DaemonOptions options = preset_options("avango");
+  options.threshold = 0.125;
+  options.max_triangles = 12'345'678'901;
+  options.scene = "a.glb";
+  for (const OptionField& field : daemon_option_fields()) {
+    const std::string shown = field.show(options);
+    if (shown.empty()) continue;
+    DaemonOptions read;
+    set_option(read, field.name, shown, "test");
+    EXPECT_EQ(field.show(read), shown) << field.name;
+  }
 }
 
 }  // namespace
