@@ -117,6 +117,10 @@ struct Case {
   int latency_ms;
 };
 
+void PrintTo(const Case& of, std::ostream* stream) {
+  *stream << of.engine << ", " << of.latency_ms << " ms";
+}
+
 class MovingObjectsIn : public ::testing::TestWithParam<Case> {
  protected:
   [[nodiscard]] static WorldSetup setup() {
