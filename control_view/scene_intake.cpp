@@ -45,14 +45,21 @@ void SceneIntake::offer(const PeerId& peer, SceneOffer offer, double now_s) {
   }
   auto known = uploads_.find(digest);
   if (known == uploads_.end()) {
-    if (std::string why = why_not(offer, now_s); !why.empty()) {
+    if (std::string why = why_never(offer); !why.empty()) {
       tell(peer, state_of(digest, SceneState::failed, std::move(why)));
+      return;
+    }
+    if (!has_room(offer, now_s)) {
+      tell(peer, state_of(digest, SceneState::full,
+                          "this daemon is full: it holds at most " + std::to_string(limits_.scenes) +
+                              " scenes and " + std::to_string(limits_.all_bytes) +
+                              " bytes of them; it takes this one when others have gone"));
       return;
     }
     Upload upload;
     upload.scene.bytes.reset(new (std::nothrow) std::uint8_t[offer.byte_count]);
     if (upload.scene.bytes == nullptr) {
-      tell(peer, state_of(digest, SceneState::failed, "no memory is left for the scene"));
+      tell(peer, state_of(digest, SceneState::full, "this daemon has no memory left for the scene"));
       return;
     }
     upload.scene.byte_count = offer.byte_count;
@@ -66,20 +73,21 @@ void SceneIntake::offer(const PeerId& peer, SceneOffer offer, double now_s) {
   tell(peer, status_of(upload, true));
 }
 
-std::string SceneIntake::why_not(const SceneOffer& offer, double now_s) {
+std::string SceneIntake::why_never(const SceneOffer& offer) const {
   if (offer.byte_count > limits_.scene_bytes)
     return limit_text("bytes", offer.byte_count, limits_.scene_bytes);
   if (offer.object_count > limits_.objects) return limit_text("objects", offer.object_count, limits_.objects);
   if (offer.triangle_count > limits_.triangles)
     return limit_text("triangles", offer.triangle_count, limits_.triangles);
   if (scene_digest_of(offer) != offer.scene_digest) return "scene_digest: not that of the offer";
+  if (offer.byte_count > limits_.all_bytes) return limit_text("bytes", offer.byte_count, limits_.all_bytes);
+  return {};
+}
+
+bool SceneIntake::has_room(const SceneOffer& offer, double now_s) {
   std::uint64_t bytes = offer.byte_count;
   for (const auto& [digest, upload] : uploads_) bytes += upload.offer.byte_count;
-  if (!scenes_.make_room(uploads_.size() + 1, bytes, limits_.scenes, limits_.all_bytes, now_s)) {
-    return "this daemon is full: it holds at most " + std::to_string(limits_.scenes) + " scenes and " +
-           std::to_string(limits_.all_bytes) + " bytes of them; try again when others have gone";
-  }
-  return {};
+  return scenes_.make_room(uploads_.size() + 1, bytes, limits_.scenes, limits_.all_bytes, now_s);
 }
 
 void SceneIntake::take(const PeerId& peer, const SceneChunk& chunk, double now_s) {

@@ -63,7 +63,10 @@ class SceneIntake {
     double heard_s = 0.0;
   };
 
-  [[nodiscard]] std::string why_not(const SceneOffer& offer, double now_s);
+  /// The limit that this scene alone is over, or what else is wrong with its offer; empty when nothing is.
+  [[nodiscard]] std::string why_never(const SceneOffer& offer) const;
+  /// Beside the other scenes and uploads, once idle scenes have gone.
+  [[nodiscard]] bool has_room(const SceneOffer& offer, double now_s);
   [[nodiscard]] static SceneStatus status_of(const Upload& upload, bool with_held);
   [[nodiscard]] static SceneStatus state_of(const SceneDigest& digest, SceneState state,
                                             std::string text = {});

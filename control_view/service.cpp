@@ -87,6 +87,7 @@ void Service::log_status(const SceneStatus& status) {
     spdlog::info("scene {}: {} chunks are there", scene, status.chunk_count);
   if (status.state == SceneState::ready) spdlog::info("scene {} is ready", scene);
   if (status.state == SceneState::failed) spdlog::warn("scene {} not taken: {}", scene, status.text);
+  if (status.state == SceneState::full) spdlog::warn("scene {} not taken now: {}", scene, status.text);
 }
 
 bool Service::drain(std::chrono::milliseconds timeout) {

@@ -220,7 +220,7 @@ Fault fault_of(const SceneOffer& message) {
 }
 
 Fault fault_of(const SceneStatus& message) {
-  if (message.state < SceneState::uploading || message.state > SceneState::failed) return "state: unknown";
+  if (message.state < SceneState::uploading || message.state > SceneState::full) return "state: unknown";
   if (message.chunks_held > message.chunk_count) return "chunks_held: above chunk_count";
   return {};
 }

@@ -199,7 +199,8 @@ enum class SceneState : std::uint8_t {
   uploading = 1,  ///< chunks are missing
   building = 2,   ///< all are there; the engine is being made
   ready = 3,      ///< say Hello with this digest
-  failed = 4      ///< and the text says why; nothing of it is kept
+  failed = 4,     ///< and the text says why; nothing of it is kept
+  full = 5        ///< of other scenes, and the text says how: offer again later
 };
 
 /// Daemon to client: how far the scene is.

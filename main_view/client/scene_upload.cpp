@@ -138,6 +138,12 @@ void SceneUpload::on_status(const SceneStatus& status) {
       }
       state_ = State::failed;
       break;
+    case SceneState::full:
+      state_ = State::offering;  // mind_silence offers again
+      text_ = status.text;
+      answer_due_ = false;
+      missing_.clear();
+      break;
   }
 }
 

@@ -23,7 +23,7 @@ struct UploadProgress {
 class SceneUpload {
  public:
   enum class State {
-    offering,   ///< nobody has answered
+    offering,   ///< nobody has answered, or the daemon is full of other scenes
     uploading,  ///< chunks are missing
     building,   ///< the daemon has all
     ready,

@@ -29,6 +29,7 @@ class ScriptedDaemon {
     std::function<WhyAnswer(const Why&)> why;  ///< empty: never answers
     bool takes_scenes = true;
     std::string refuses_scenes;         ///< if not empty, why every offer fails
+    int full_offers = 0;                ///< so many are told that there is no room
     std::size_t dies_after_chunks = 0;  ///< forgets the upload once after so many; 0: never
     bool answers = true;
     bool says_ready_at_once = false;  ///< to every offer, true or not
@@ -122,6 +123,10 @@ class ScriptedDaemon {
     if (!script_.takes_scenes) return;
     offer_ = offer;
     if (!script_.refuses_scenes.empty()) return tell(SceneState::failed, false, script_.refuses_scenes);
+    if (script_.full_offers > 0) {
+      --script_.full_offers;
+      return tell(SceneState::full, false, "this daemon is full");
+    }
     offered_ = true;
     if (script_.says_ready_at_once) return tell(SceneState::ready, false);
     if (script_.scenes.contains(offer.scene_digest)) return tell(SceneState::ready, false);

@@ -206,6 +206,50 @@ TEST_F(ClientWithService, FollowsEditsAndSaysWhy) {
   EXPECT_EQ(exact_list(), (Indices{0, 4}));
 }
 
+/// What docs/c_api.md recommends for a scene that has grown: a second client, and a change of clients when it
+/// is ready.
+TEST_F(ClientWithService, LetsAnAddedWallHideOnceTheSceneIsOfferedAnew) {
+  const auto cubes_and = [](bool wall, std::uint32_t spares) {
+    SceneDescription scene;
+    const MeshId cube = testing::add_cube(scene);
+    for (int i = 0; i < 3; ++i) scene.add_object(cube, placed_at({i - 1.0, 0, -9}));
+    glm::dmat4x3 wide = placed_at({0, 0, -5});
+    wide[0] *= 8.0;
+    wide[1] *= 8.0;
+    if (wall) scene.add_object(cube, wide);
+    scene.set_spare_objects(spares);
+    return scene.pack();
+  };
+  CullingClient client = connect(cubes_and(false, 1));
+  ViewId view = client.add_view(main_view());
+  ViewPose pose = view_pose(view, {0, 0, 0});
+  glm::dmat4x3 wide = placed_at({0, 0, -5});
+  wide[0] *= 8.0;
+  wide[1] *= 8.0;
+  ASSERT_EQ(client.add_object({k_unit_box, wide, 0, 0}), ObjectId{3});
+  ASSERT_TRUE(client.begin_frame_and_wait(1.0, {&pose, 1}, k_patience_s).exact());
+  EXPECT_EQ(listed(client, view), (Indices{0, 1, 2, 3}));  // a box that hides nothing
+
+  ClientOptions options;
+  options.endpoint = daemon_.endpoint();
+  options.silence_limit_s = 20.0;
+  CullingClient next(options, cubes_and(true, 0));
+  const Clock clock = steady_clock();
+  double time_s = 1.0;
+  for (const double end_s = clock() + k_patience_s; next.poll() != ClientState::ready && clock() < end_s;) {
+    time_s += 0.01;
+    (void)client.begin_frame(time_s, {&pose, 1});  // frames go on, all the time with the same list
+    EXPECT_EQ(listed(client, view), (Indices{0, 1, 2, 3}));
+    EXPECT_EQ(client.state(), ClientState::ready);
+  }
+  ASSERT_EQ(next.state(), ClientState::ready);
+  client = std::move(next);
+  view = client.add_view(main_view());
+  pose = view_pose(view, {0, 0, 0});
+  ASSERT_TRUE(client.begin_frame_and_wait(time_s, {&pose, 1}, k_patience_s).exact());
+  EXPECT_EQ(listed(client, view), (Indices{3}));
+}
+
 TEST_F(ClientWithService, GivesEachKindOfObjectItsPart) {
   SceneDescription scene;
   const MeshId cube = testing::add_cube(scene);

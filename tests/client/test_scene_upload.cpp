@@ -122,6 +122,22 @@ TEST(SceneUpload, WaitsForADaemonThatComesLater) {
   EXPECT_TRUE(joined(daemon.heard().upload) == the_scene()->bytes);
 }
 
+TEST(SceneUpload, OffersAgainUntilAFullDaemonHasRoom) {
+  ScriptedDaemon::Script script;
+  script.full_offers = 2;
+  ScriptedDaemon daemon(script);
+  SceneUpload upload = upload_to(daemon.endpoint());
+  for (int i = 0; i < 1000 && upload.text().empty(); ++i) {
+    (void)upload.poll(now_s());
+    upload.wait(0.01);
+  }
+  EXPECT_EQ(upload.text(), "this daemon is full");
+  EXPECT_EQ(upload.state(), SceneUpload::State::offering);
+  EXPECT_EQ(daemon.heard().chunks, 0u);
+  ASSERT_TRUE(drive_to(upload, SceneUpload::State::ready));
+  EXPECT_EQ(daemon.heard().offers, 3u);
+}
+
 TEST(SceneUpload, SaysWhyTheDaemonWillNotHaveIt) {
   ScriptedDaemon::Script script;
   script.refuses_scenes = "the scene has 5 objects, this daemon takes at most 4";

@@ -123,7 +123,7 @@ SceneOffer random_offer(std::mt19937_64& random) {
 SceneStatus random_status(std::mt19937_64& random) {
   SceneStatus status;
   status.scene_digest = random_digest(random);
-  status.state = static_cast<SceneState>(1 + random() % 4);
+  status.state = static_cast<SceneState>(1 + random() % 5);
   status.text = random_text(random);
   status.chunk_count = static_cast<std::uint32_t>(random() % 1000);
   status.chunks_held = static_cast<std::uint32_t>(random() % (status.chunk_count + 1));
@@ -263,7 +263,9 @@ std::vector<NamedMessage> golden_messages() {
       {"scene_status",
        SceneStatus{offer.scene_digest, SceneState::uploading, "", 20, 3, encode_keyframe(set_of({0, 1, 7}))}},
       {"scene_status_failed",
-       SceneStatus{offer.scene_digest, SceneState::failed, "this daemon is full", 0, 0, {}}},
+       SceneStatus{offer.scene_digest, SceneState::failed, "this daemon takes no scenes", 0, 0, {}}},
+      {"scene_status_full",
+       SceneStatus{offer.scene_digest, SceneState::full, "this daemon holds 16 scenes", 0, 0, {}}},
       {"scene_chunk", SceneChunk{offer.scene_digest, 0, scene}},
       {"why", Why{request.session_id, 42, 3, ObjectId{70'000}}},
       {"why_answer", WhyAnswer{request.session_id,

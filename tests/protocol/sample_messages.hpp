@@ -1,5 +1,6 @@
 #pragma once
 
+#include <ostream>
 #include <random>
 #include <string>
 #include <vector>
@@ -14,6 +15,11 @@ struct NamedMessage {
   std::string name;
   Message message;
 };
+
+/// For GoogleTest, which would print bytes.
+inline void PrintTo(const NamedMessage& frame, std::ostream* stream) {
+  *stream << frame.name;
+}
 
 /// One fixed message of each kind, both forms of a visible set: what the golden frames hold.
 [[nodiscard]] std::vector<NamedMessage> golden_messages();

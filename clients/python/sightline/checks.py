@@ -6,8 +6,8 @@ Used both ways: on a peer's message before anybody reads it, and on our own befo
 import numpy as np
 
 from .errors import ProtocolError
-from .messages import (PROTOCOL_VERSION, Goodbye, Hello, Ping, Pong, Refusal, SceneChunk, SceneOffer, SceneStatus,
-                       ViewRequest, VisibleSet, Welcome, Why, WhyAnswer)
+from .messages import (PROTOCOL_VERSION, Goodbye, Hello, Ping, Pong, Refusal, SceneChunk, SceneOffer, SceneState,
+                       SceneStatus, ViewRequest, VisibleSet, Welcome, Why, WhyAnswer)
 
 MAX_OBJECTS = 4_294_967_294
 MAX_EYES = 8
@@ -148,7 +148,7 @@ def _scene_offer(message):
 
 
 def _scene_status(message):
-    require(1 <= message.state <= 4, "state: unknown")
+    require(1 <= message.state <= max(SceneState), "state: unknown")
     require(message.chunks_held <= message.chunk_count, "chunks_held: above chunk_count")
 
 

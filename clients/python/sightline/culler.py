@@ -114,8 +114,9 @@ class Culler:
             if self._opened():
                 return self._session.welcome
             if left_s <= 0.0:
-                refusal = self._session.refusal
-                why = refusal.text if refusal else self._session.last_fault or "no answer"
+                refusal, upload = self._session.refusal, self._session.upload
+                why = refusal.text if refusal else upload.text if upload and upload.text else self._session.last_fault
+                why = why or "no answer"
                 raise Timeout(f"{self.state.value} for {timeout_s} s: {why}")
 
     def _opened(self):

@@ -43,6 +43,7 @@ class SceneState(IntEnum):
     BUILDING = 2
     READY = 3
     FAILED = 4
+    FULL = 5
 
 
 class WhyState(IntEnum):

@@ -61,6 +61,8 @@ class Upload:
             self._offered = False
             return True
         self._missing, self._offered = [], False
+        if message.state == SceneState.FULL:
+            return True  # step offers again
         if message.state == SceneState.READY:
             self.failures = 0
         if message.state != SceneState.FAILED:

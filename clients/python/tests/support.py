@@ -138,6 +138,7 @@ class FakeDaemon:
         self.silent = False
         self.drop_after_chunks = None  # pretends to die then
         self.fail_with = None  # text; instead of being ready
+        self.full_offers = 0  # so many are told that there is no room
         self.failed = None
         self._sessions = {}
         self._socket = zmq.Context.instance().socket(zmq.ROUTER)
@@ -239,6 +240,10 @@ class FakeDaemon:
             + message.triangle_count.to_bytes(8, "little")
         if digest_of(message.chunk_digests + sizes) != message.scene_digest:
             raise ProtocolError("offer: its digest is not its own")
+        if self.full_offers:
+            self.full_offers -= 1
+            self.reply(peer, m.SceneStatus(message.scene_digest, m.SceneState.FULL, "this daemon is full"))
+            return
         scene = self.scenes.setdefault(message.scene_digest, {"offer": message, "chunks": {}})
         self.held_at_offer.append(len(scene["chunks"]))
         self._status(peer, message.scene_digest, True)

@@ -349,6 +349,16 @@ class Uploading(WithADaemon):
             culler.wait_until_open(20)
         self.assertEqual(daemon.offers, 2)
 
+    def test_a_full_daemon_is_asked_again(self):
+        daemon, data = self.start(None), large_scene().data()
+        daemon.full_offers = 1
+        culler = Culler(daemon.endpoint, data)
+        self.addCleanup(culler.close)
+        with self.assertRaisesRegex(Timeout, "full"):
+            culler.wait_until_open(0.5)
+        culler.wait_until_open(20)
+        self.assertEqual(daemon.offers, 2)
+
     def test_groups_and_always_visible_objects_are_drawn(self):
         daemon, data = self.start(None), large_scene().data()
         culler = self.connect(daemon, scene=data)
