@@ -142,8 +142,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   // Whatever was said, and however long ago the honest client's last session was reaped.
   world.hostile.reconnect();
-  world.now_s += 20.0;
-  world.service.step(k_no_wait);
+  for (const double passed_s : {20.0, 1.0}) {  // found silent, and then closed
+    world.now_s += passed_s;
+    world.service.step(k_no_wait);
+  }
   world.honest.send(encode(Hello{k_protocol_version, "honest", k_digest}));
   const auto welcome = world.must_say<Welcome>(world.honest);
   ViewRequest request;
