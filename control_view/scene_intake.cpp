@@ -1,8 +1,6 @@
 #include "control_view/scene_intake.hpp"
 
 #include <algorithm>
-#include <cstring>
-#include <new>
 #include <utility>
 
 #include "common/scene_digest.hpp"
@@ -27,8 +25,13 @@ std::string limit_text(const char* what, std::uint64_t given, std::uint64_t most
 
 }  // namespace
 
-SceneIntake::SceneIntake(SceneStore& scenes, const IntakeLimits& limits, SceneBuilder::MakeEngine make_engine)
-    : scenes_(scenes), limits_(limits), builder_(std::move(make_engine)) {}
+SceneIntake::SceneIntake(SceneStore& scenes, const IntakeLimits& limits, MakeEngine make_engine)
+    : scenes_(scenes),
+      limits_(limits),
+      checker_([](const ChunkCheck& check) { return check_chunks(check); }),
+      builder_([make_engine = std::move(make_engine)](FinishedUpload upload) {
+        return build_scene(std::move(upload), make_engine);
+      }) {}
 
 void SceneIntake::offer(const PeerId& peer, SceneOffer offer, double now_s) {
   const SceneDigest digest = offer.scene_digest;
@@ -57,12 +60,11 @@ void SceneIntake::offer(const PeerId& peer, SceneOffer offer, double now_s) {
       return;
     }
     Upload upload;
-    upload.scene.bytes.reset(new (std::nothrow) std::uint8_t[offer.byte_count]);
-    if (upload.scene.bytes == nullptr) {
+    upload.bytes = SceneBytes(offer.byte_count);
+    if (upload.bytes.empty()) {
       tell(peer, state_of(digest, SceneState::full, "this daemon has no memory left for the scene"));
       return;
     }
-    upload.scene.byte_count = offer.byte_count;
     upload.sent_by.resize(offer.chunk_digests.size());
     upload.offer = std::move(offer);
     upload.heard_s = now_s;
@@ -71,6 +73,7 @@ void SceneIntake::offer(const PeerId& peer, SceneOffer offer, double now_s) {
   Upload& upload = known->second;
   if (upload.peers.size() < k_most_peers) upload.peers.insert(peer);
   tell(peer, status_of(upload, true));
+  if (!upload.is_whole()) check(upload);
 }
 
 std::string SceneIntake::why_never(const SceneOffer& offer) const {
@@ -90,7 +93,7 @@ bool SceneIntake::has_room(const SceneOffer& offer, double now_s) {
   return scenes_.make_room(uploads_.size() + 1, bytes, limits_.scenes, limits_.all_bytes, now_s);
 }
 
-void SceneIntake::take(const PeerId& peer, const SceneChunk& chunk, double now_s) {
+void SceneIntake::take(const PeerId& peer, const SceneChunkView& chunk, double now_s) {
   const auto known = uploads_.find(chunk.scene_digest);
   if (known == uploads_.end()) {
     // The last chunks of an upload that somebody else has finished meanwhile, most likely.
@@ -100,10 +103,9 @@ void SceneIntake::take(const PeerId& peer, const SceneChunk& chunk, double now_s
     return;
   }
   Upload& upload = known->second;
-  if (upload.building || upload.liars.contains(peer)) return;
-  const bool is_chunk =
-      chunk.index < upload.offer.chunk_digests.size() &&
-      chunk.bytes.size() == chunk_of({upload.scene.bytes.get(), upload.scene.byte_count}, chunk.index).size();
+  if (upload.is_whole() || upload.liars.contains(peer)) return;
+  const bool is_chunk = chunk.index < upload.offer.chunk_digests.size() &&
+                        chunk.bytes.size() == upload.bytes.chunk(chunk.index).size();
   if (!is_chunk) {
     tell(peer, state_of(chunk.scene_digest, SceneState::failed,
                         "chunk " + std::to_string(chunk.index) + " is not as long as the offer says"));
@@ -111,52 +113,64 @@ void SceneIntake::take(const PeerId& peer, const SceneChunk& chunk, double now_s
   }
   if (upload.held.contains(chunk.index)) return;
   upload.heard_s = now_s;
-  std::memcpy(upload.scene.bytes.get() + std::size_t{chunk.index} * k_scene_chunk_bytes, chunk.bytes.data(),
-              chunk.bytes.size());
+  std::ranges::copy(chunk.bytes, upload.bytes.chunk(chunk.index).begin());
   upload.held.add(chunk.index);
-  if (upload.peers.contains(peer) || upload.peers.size() < k_most_peers)
-    upload.sent_by[chunk.index] = &*upload.peers.insert(peer).first;
-  if (upload.held.cardinality() == upload.offer.chunk_digests.size()) {
-    begin_building(upload);
+  const bool is_known = upload.peers.contains(peer) || upload.peers.size() < k_most_peers;
+  upload.sent_by[chunk.index] = is_known ? &*upload.peers.insert(peer).first : nullptr;
+  if (upload.is_whole()) {
+    tell_all(upload, status_of(upload, false));
   } else if (upload.held.cardinality() % k_chunks_a_status == 0) {
     tell(peer, status_of(upload, false));
   }
+  check(upload);
 }
 
-void SceneIntake::begin_building(Upload& upload) {
-  upload.building = true;
-  ++building_;
-  builder_.build(upload.offer, std::move(upload.scene));
-  tell_all(upload, status_of(upload, false));
+/// Has the chunks checked that were not, if it is time to; see the class.
+void SceneIntake::check(Upload& upload) {
+  if (!upload.is_whole() && upload.peers.size() < 2) return;
+  ChunkCheck check{upload.offer.scene_digest, upload.bytes, {}};
+  for (const std::uint32_t index : upload.held - upload.given_to_check)
+    check.chunks.push_back({index, upload.offer.chunk_digests[index]});
+  if (check.chunks.empty()) return;
+  upload.given_to_check = upload.held;
+  checker_.give(std::move(check));
+  ++jobs_;
 }
 
 void SceneIntake::step(double now_s) {
+  while (const std::optional<CheckedChunks> checked = checker_.take()) file(*checked, now_s);
   while (std::optional<BuiltScene> built = builder_.take()) finish(*std::move(built), now_s);
   std::erase_if(uploads_, [&](const auto& entry) {
-    return !entry.second.building && now_s - entry.second.heard_s > k_idle_s;
+    return !entry.second.is_busy() && now_s - entry.second.heard_s > k_idle_s;
   });
 }
 
-void SceneIntake::finish(BuiltScene built, double now_s) {
-  --building_;
-  const auto known = uploads_.find(built.digest);
-  Upload& upload = known->second;
-  if (const auto* wrong = std::get_if<std::vector<std::uint32_t>>(&built.result)) {
-    upload.building = false;
-    upload.scene = std::move(built.bytes);
-    upload.heard_s = now_s;
-    for (const std::uint32_t index : *wrong) {
-      upload.held.remove(index);
-      const PeerId* sender = upload.sent_by[index];
-      if (sender == nullptr || !upload.liars.insert(*sender).second) continue;
-      tell(*sender, state_of(built.digest, SceneState::failed,
-                             "chunk " + std::to_string(index) + " has not the digest that the offer says"));
-    }
-    for (const PeerId& peer : upload.peers) {
-      if (!upload.liars.contains(peer)) tell(peer, status_of(upload, true));
-    }
-    return;
+void SceneIntake::file(const CheckedChunks& checked, double now_s) {
+  --jobs_;
+  Upload& upload = uploads_.at(checked.scene_digest);
+  for (const std::uint32_t index : checked.right) upload.right.add(index);
+  for (const std::uint32_t index : checked.wrong) {
+    upload.held.remove(index);
+    upload.given_to_check.remove(index);
+    const PeerId* sender = upload.sent_by[index];
+    if (sender == nullptr || !upload.liars.insert(*sender).second) continue;
+    tell(*sender, state_of(checked.scene_digest, SceneState::failed,
+                           "chunk " + std::to_string(index) + " has not the digest that the offer says"));
   }
+  if (!checked.wrong.empty()) {
+    upload.heard_s = now_s;
+    tell_all(upload, status_of(upload, true));
+  }
+  if (upload.right.cardinality() == upload.offer.chunk_digests.size()) {
+    builder_.give({upload.offer, std::exchange(upload.bytes, {})});
+    ++jobs_;
+  }
+}
+
+void SceneIntake::finish(BuiltScene built, double now_s) {
+  --jobs_;
+  const auto known = uploads_.find(built.digest);
+  const Upload& upload = known->second;
   if (auto* scene = std::get_if<ServedScenePtr>(&built.result)) {
     (*scene)->last_used_s = now_s;
     tell_all(upload, state_of(built.digest, SceneState::ready));
@@ -170,7 +184,7 @@ void SceneIntake::finish(BuiltScene built, double now_s) {
 SceneStatus SceneIntake::status_of(const Upload& upload, bool with_held) {
   SceneStatus status;
   status.scene_digest = upload.offer.scene_digest;
-  status.state = upload.building ? SceneState::building : SceneState::uploading;
+  status.state = upload.is_whole() ? SceneState::building : SceneState::uploading;
   status.chunk_count = static_cast<std::uint32_t>(upload.offer.chunk_digests.size());
   status.chunks_held = static_cast<std::uint32_t>(upload.held.cardinality());
   if (with_held) status.held = bytes_of(upload.held);

@@ -9,6 +9,7 @@
 #include <spdlog/spdlog.h>
 
 #include "common/error.hpp"
+#include "protocol/scene_chunk_frame.hpp"
 #include "protocol/scene_chunks.hpp"
 
 namespace sightline {
@@ -142,7 +143,7 @@ bool Service::may_answer_now() const {
 
 std::chrono::milliseconds Service::wait_time(std::chrono::milliseconds timeout) const {
   if (!sessions_.any_pending())
-    return intake_ != nullptr && intake_->is_building() ? std::min(timeout, k_wait_for_builder) : timeout;
+    return intake_ != nullptr && intake_->is_busy() ? std::min(timeout, k_wait_for_builder) : timeout;
   if (options_.answer_rate_hz <= 0.0) return std::chrono::milliseconds{0};
   const double wait_ms = std::clamp(std::ceil((next_answer_s_ - clock_()) * 1e3), 0.0, 1e6);
   return std::min(timeout, std::chrono::milliseconds{static_cast<std::int64_t>(wait_ms)});
@@ -164,6 +165,10 @@ void Service::receive(const ServerLink::Incoming& incoming) {
       refuse(incoming.peer, RefusalReason::no_session, "a large frame without a session: say Hello first");
     }
     return;
+  }
+  if (const auto chunk = view_scene_chunk(incoming.frame, limits_)) {
+    if (session != nullptr) session->heard(clock_());
+    return take_chunk(incoming.peer, *chunk);
   }
   auto decoded = decode(incoming.frame, limits_);
   if (const auto* error = std::get_if<DecodeError>(&decoded)) {
@@ -266,6 +271,10 @@ void Service::handle(const PeerId& peer, SceneOffer&& offer) {
 }
 
 void Service::handle(const PeerId& peer, SceneChunk&& chunk) {
+  take_chunk(peer, chunk);
+}
+
+void Service::take_chunk(const PeerId& peer, const SceneChunkView& chunk) {
   if (intake_ != nullptr) return intake_->take(peer, chunk, clock_());
   refuse_malformed(peer, "this daemon takes no scenes over the wire");
 }

@@ -78,6 +78,7 @@ class Service {
   void handle(const PeerId& peer, Why&& question);
   void handle(const PeerId& peer, SceneOffer&& offer);
   void handle(const PeerId& peer, SceneChunk&& chunk);
+  void take_chunk(const PeerId& peer, const SceneChunkView& chunk);
   /// Messages that only a daemon sends.
   template <class DaemonMessage>
   void handle(const PeerId& peer, DaemonMessage&& message);

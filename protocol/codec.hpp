@@ -27,10 +27,6 @@ struct DecodeError {
 /// One FlatBuffers frame (file identifier "SLN1") for any message.
 [[nodiscard]] Bytes encode(const Message& message);
 
-/// The same frame as encode(SceneChunk{...}), without a copy of the bytes on the way.
-[[nodiscard]] Bytes encode_scene_chunk(const SceneDigest& scene_digest, std::uint32_t index,
-                                       std::span<const std::uint8_t> bytes);
-
 /// Safe on untrusted bytes: verified before any field is read, every count checked against `limits` before
 /// any allocation, every number checked (matrices finite, sizes within k_max_image_side, 1..k_max_eyes eyes).
 /// Returns the message or the first reason it was refused; throws only bad_alloc.

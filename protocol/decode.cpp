@@ -4,18 +4,12 @@
 
 #include "protocol/clean_text.hpp"
 #include "protocol/codec.hpp"
+#include "protocol/envelope.hpp"
 #include "protocol/generated/sightline_generated.h"
 #include "protocol/message_checks.hpp"
 
 namespace sightline {
 namespace {
-
-/// Ours are three deep; the rest is room for a later version's.
-constexpr flatbuffers::uoffset_t k_max_depth = 16;
-constexpr flatbuffers::uoffset_t k_max_tables = 64;
-
-/// The strictest alignment of any field; the reads below are plain loads.
-constexpr std::size_t k_frame_alignment = alignof(double);
 
 /// Copies verified fields into values and keeps the first reason why one cannot be: from then on the values
 /// read mean nothing.
@@ -266,25 +260,14 @@ std::optional<Message> read_body(const wire::Envelope& envelope, Reader& reader)
 }  // namespace
 
 std::variant<Message, DecodeError> decode(std::span<const std::byte> frame, const DecodeLimits& limits) {
-  if (frame.size() > std::min<std::size_t>(limits.max_frame_bytes, FLATBUFFERS_MAX_BUFFER_SIZE - 1)) {
-    return DecodeError{"frame of " + std::to_string(frame.size()) + " bytes, at most " +
-                       std::to_string(limits.max_frame_bytes)};
-  }
-  // Every FlatBuffers writer pads a buffer to its alignment, four at least. Without this check a frame cut
-  // within its last padding would still pass.
-  if (frame.size() % sizeof(flatbuffers::uoffset_t) != 0)
-    return DecodeError{"frame length not a multiple of 4"};
-
   Bytes aligned_copy;
-  if (reinterpret_cast<std::uintptr_t>(frame.data()) % k_frame_alignment != 0) {
+  if (!is_aligned(frame) && frame.size() <= limits.max_frame_bytes) {
     aligned_copy.assign(frame.begin(), frame.end());
     frame = aligned_copy;
   }
-  flatbuffers::Verifier verifier(reinterpret_cast<const std::uint8_t*>(frame.data()), frame.size(),
-                                 k_max_depth, k_max_tables);
-  if (!wire::VerifyEnvelopeBuffer(verifier)) return DecodeError{"not a well-formed SLN1 frame"};
-
-  const wire::Envelope& envelope = *wire::GetEnvelope(frame.data());
+  const auto verified = verified_envelope(frame, limits);
+  if (const auto* error = std::get_if<DecodeError>(&verified)) return *error;
+  const wire::Envelope& envelope = *std::get<const wire::Envelope*>(verified);
   Reader reader(limits);
   std::optional<Message> message = read_body(envelope, reader);
   if (!message) {

@@ -232,13 +232,4 @@ Bytes encode(const Message& message) {
   return finished(builder, type_of(message), body);
 }
 
-Bytes encode_scene_chunk(const SceneDigest& scene_digest, std::uint32_t index,
-                         std::span<const std::uint8_t> bytes) {
-  FlatBufferBuilder builder(k_small_frame_bytes + bytes.size());
-  const auto wire_bytes = builder.CreateVector(bytes.data(), bytes.size());
-  const wire::Digest digest = to_wire(scene_digest);
-  return finished(builder, wire::Body::SceneChunk,
-                  wire::CreateSceneChunk(builder, &digest, index, wire_bytes).Union());
-}
-
 }  // namespace sightline

@@ -33,6 +33,25 @@ Bytes bytes_of(const zmq::message_t& message) {
   return Bytes(begin, begin + message.size());
 }
 
+/// The message's own memory as a frame. Aligned to 8 bytes where the message is a large one.
+Frame frame_of(zmq::message_t&& message) {
+  // A short message lies in the message itself: it has to have its place before it is looked at.
+  auto owner = std::make_shared<zmq::message_t>(std::move(message));
+  const std::span<const std::byte> bytes(static_cast<const std::byte*>(owner->data()), owner->size());
+  return Frame(std::move(owner), bytes);
+}
+
+/// The frame's memory as a message, which holds the frame until ZeroMQ lets go of it.
+zmq::message_t message_of(const Frame& frame) {
+  auto held = std::make_unique<Frame>(frame);
+  // ZeroMQ takes data to change, and changes none that it sends.
+  zmq::message_t message(
+      const_cast<std::byte*>(frame.data()), frame.size(),
+      [](void*, void* hint) { delete static_cast<Frame*>(hint); }, held.get());
+  (void)held.release();
+  return message;
+}
+
 std::string name_of(const Endpoint& endpoint) {
   return "endpoint '" + endpoint.text + "'";
 }
@@ -78,12 +97,11 @@ auto retry_interrupted(Call call) {
 }
 
 /// Never waits; false when the queue is full or, for a ROUTER, the peer unknown.
-bool send_part(zmq::socket_t& socket, const void* data, std::size_t size,
-               zmq::send_flags flags = zmq::send_flags::none) {
+template <typename Part>
+bool send_part(zmq::socket_t& socket, Part&& part, zmq::send_flags flags = zmq::send_flags::none) {
   try {
-    return retry_interrupted([&] {
-      return socket.send(zmq::const_buffer(data, size), flags | zmq::send_flags::dontwait).has_value();
-    });
+    return retry_interrupted(
+        [&] { return socket.send(part, flags | zmq::send_flags::dontwait).has_value(); });
   } catch (const zmq::error_t& error) {
     if (error.num() == EHOSTUNREACH) return false;
     throw MachineError(std::string("zmq_send: ") + error.what());
@@ -177,7 +195,14 @@ ClientLink::ClientLink(ClientLink&&) noexcept = default;
 ClientLink& ClientLink::operator=(ClientLink&&) noexcept = default;
 
 bool ClientLink::send(const Bytes& frame) {
-  if (!send_part(impl_->socket, frame.data(), frame.size())) return false;
+  if (!send_part(impl_->socket, zmq::buffer(frame))) return false;
+  impl_->bytes_sent += frame.size();
+  return true;
+}
+
+bool ClientLink::send(const Frame& frame) {
+  zmq::message_t message = message_of(frame);
+  if (!send_part(impl_->socket, message)) return false;
   impl_->bytes_sent += frame.size();
   return true;
 }
@@ -243,13 +268,13 @@ std::string ServerLink::bound_endpoint() const {
 std::optional<ServerLink::Incoming> ServerLink::receive(milliseconds timeout) {
   zmq::message_t parts[2];
   if (!receive_exactly(impl_->socket, parts, timeout)) return {};
-  return Incoming{parts[0].to_string(), bytes_of(parts[1])};
+  return Incoming{parts[0].to_string(), frame_of(std::move(parts[1]))};
 }
 
 bool ServerLink::send(const PeerId& peer, const Bytes& frame) {
   // ROUTER decides about the whole message by its first part: the second one cannot be refused.
-  return send_part(impl_->socket, peer.data(), peer.size(), zmq::send_flags::sndmore) &&
-         send_part(impl_->socket, frame.data(), frame.size());
+  return send_part(impl_->socket, zmq::buffer(peer), zmq::send_flags::sndmore) &&
+         send_part(impl_->socket, zmq::buffer(frame));
 }
 
 }  // namespace sightline

@@ -9,6 +9,7 @@
 
 #include "protocol/codec.hpp"
 #include "protocol/curve_keys.hpp"
+#include "protocol/frame.hpp"
 
 namespace sightline {
 
@@ -36,6 +37,8 @@ class ClientLink {
   /// Queues a frame; false when the queue is full (the peer is gone or slow): drop it, newest wins.
   /// What was queued for a peer that went away is delivered to the next one that listens there.
   bool send(const Bytes& frame);
+  /// The same without a copy: for large frames. They are held until they have left.
+  bool send(const Frame& frame);
   /// Next frame within `timeout`, or empty. Zero polls. Multi-part messages are dropped.
   [[nodiscard]] std::optional<Bytes> receive(std::chrono::milliseconds timeout);
   /// Drops the connection and everything queued, then connects anew to the same endpoint.
@@ -68,7 +71,7 @@ class ServerLink {
 
   struct Incoming {
     PeerId peer;
-    Bytes frame;
+    Frame frame;
   };
   /// Next frame within `timeout`, or empty. Multi-part messages that are not peer + frame are dropped.
   [[nodiscard]] std::optional<Incoming> receive(std::chrono::milliseconds timeout);

@@ -68,19 +68,20 @@ bool is_invertible(const glm::dmat4& matrix) {
   return distance_from_identity(matrix * inverse) <= 1e-6;
 }
 
+const char* fault_of_eye(const Eye& eye) {
+  if (!entries_within_limit(eye.camera_from_world)) return "camera_from_world: not finite or too large";
+  if (!entries_within_limit(eye.clip_from_camera)) return "clip_from_camera: not finite or too large";
+  if (!is_rigid(eye.camera_from_world)) return "camera_from_world: not a rotation and a translation";
+  if (!is_invertible(eye.clip_from_camera)) return "clip_from_camera: has no inverse";
+  return nullptr;
+}
+
 Fault fault_of_eyes(const std::vector<Eye>& eyes) {
   if (eyes.empty() || eyes.size() > k_max_eyes) {
     return "eyes: " + std::to_string(eyes.size()) + ", must be 1 to " + std::to_string(k_max_eyes);
   }
   for (std::size_t i = 0; i < eyes.size(); ++i) {
-    const std::string name = "eyes[" + std::to_string(i) + "].";
-    if (!entries_within_limit(eyes[i].camera_from_world))
-      return name + "camera_from_world: not finite or too large";
-    if (!entries_within_limit(eyes[i].clip_from_camera))
-      return name + "clip_from_camera: not finite or too large";
-    if (!is_rigid(eyes[i].camera_from_world))
-      return name + "camera_from_world: not a rotation and a translation";
-    if (!is_invertible(eyes[i].clip_from_camera)) return name + "clip_from_camera: has no inverse";
+    if (const char* fault = fault_of_eye(eyes[i])) return "eyes[" + std::to_string(i) + "]." + fault;
   }
   return {};
 }
@@ -250,6 +251,11 @@ Fault fault_of(const WhyAnswer& message) {
 
 std::optional<std::string> first_fault(const Message& message) {
   return std::visit([](const auto& body) { return fault_of(body); }, message);
+}
+
+std::optional<std::string> first_fault(const Eye& eye) {
+  if (const char* fault = fault_of_eye(eye)) return fault;
+  return {};
 }
 
 }  // namespace sightline

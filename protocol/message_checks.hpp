@@ -26,5 +26,7 @@ inline constexpr double k_max_setting = 1e12;
 /// Looks at numbers only: counts and texts are checked by `decode` before they are copied.
 /// A Hello or Refusal of another version has only what every version shares checked.
 [[nodiscard]] std::optional<std::string> first_fault(const Message& message);
+/// The same of one eye of a request, without its place in it.
+[[nodiscard]] std::optional<std::string> first_fault(const Eye& eye);
 
 }  // namespace sightline

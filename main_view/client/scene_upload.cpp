@@ -7,6 +7,7 @@
 #include <variant>
 
 #include "protocol/codec.hpp"
+#include "protocol/scene_chunk_frame.hpp"
 #include "protocol/scene_chunks.hpp"
 #include "protocol/visible_set.hpp"
 
@@ -58,6 +59,9 @@ SceneUpload::State SceneUpload::poll(double now_s) {
   }
   if (offer_due_) offer(now_s, std::exchange(reconnect_due_, false));
   send_chunks(now_s);
+  // Behind the chunks on their way, so that the answer knows of them.
+  if (state_ == State::uploading && missing_.empty() && std::exchange(chunks_lost_, false))
+    offer(now_s, false);
   mind_silence(now_s);
   return state_;
 }
@@ -66,9 +70,9 @@ void SceneUpload::send_chunks(double now_s) {
   for (int i = 0; i < k_max_chunks_a_poll && !missing_.empty(); ++i) {
     const std::uint32_t index = missing_.back();
     const auto bytes = chunk_of(scene_->bytes, index);
-    if (unsent_.empty()) unsent_ = encode_scene_chunk(scene_->offer.scene_digest, index, bytes);
+    if (unsent_.empty()) unsent_ = encode_scene_chunk({scene_->offer.scene_digest, index, bytes});
     if (!link_.send(unsent_)) return;
-    unsent_.clear();
+    unsent_ = {};
     missing_.pop_back();
     ++chunks_on_link_;
     chunk_bytes_sent_ += bytes.size();
@@ -113,7 +117,11 @@ void SceneUpload::on_status(const SceneStatus& status) {
       state_ = State::uploading;
       chunks_held_ = std::min(status.chunks_held, static_cast<std::uint32_t>(chunks.size()));
       // `held` comes with the answer to an offer alone; empty there only where the daemon has nothing.
-      if (answer_due_ && (!status.held.empty() || status.chunks_held == 0)) list_missing(status);
+      if (answer_due_ && (!status.held.empty() || status.chunks_held == 0)) {
+        list_missing(status);
+      } else if (!status.held.empty()) {
+        chunks_lost_ = true;
+      }
       break;
     case SceneState::building:
       state_ = State::building;
@@ -148,7 +156,7 @@ void SceneUpload::on_status(const SceneStatus& status) {
 }
 
 void SceneUpload::list_missing(const SceneStatus& status) {
-  answer_due_ = false;
+  answer_due_ = chunks_lost_ = false;
   const auto chunk_count = static_cast<std::uint32_t>(scene_->offer.chunk_digests.size());
   VisibleSet held;
   VisibleSetFrame frame;  // a set of numbers like any other
@@ -158,7 +166,7 @@ void SceneUpload::list_missing(const SceneStatus& status) {
     auto decoded = decode_visible_set(frame, nullptr, chunk_count);
     if (auto* set = std::get_if<VisibleSet>(&decoded)) held = std::move(*set);
   }
-  unsent_.clear();
+  unsent_ = {};
   missing_.clear();
   for (std::uint32_t i = chunk_count; i-- > 0;) {
     if (!held.contains(ObjectId{i})) missing_.push_back(i);

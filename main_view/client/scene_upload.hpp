@@ -63,10 +63,11 @@ class SceneUpload {
   State state_ = State::offering;
   std::string text_;
   std::vector<std::uint32_t> missing_;  ///< chunks still to send, last one first
-  Bytes unsent_;                        ///< the next one's frame, when the link would not take it
+  Frame unsent_;                        ///< the next one's frame, when the link would not take it
   std::uint32_t chunks_held_ = 0;
   std::uint64_t chunk_bytes_sent_ = 0;
-  bool answer_due_ = false;  ///< to the newest offer
+  bool answer_due_ = false;   ///< to the newest offer
+  bool chunks_lost_ = false;  ///< some that the daemon had, or that others sent, were wrong
   bool offer_due_ = true;
   bool reconnect_due_ = false;        ///< before the next offer
   std::uint64_t chunks_on_link_ = 0;  ///< since it was connected

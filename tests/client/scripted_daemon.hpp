@@ -28,9 +28,10 @@ class ScriptedDaemon {
     std::function<VisibleSet(const ViewRequest&)> see = [](const ViewRequest&) { return VisibleSet(); };
     std::function<WhyAnswer(const Why&)> why;  ///< empty: never answers
     bool takes_scenes = true;
-    std::string refuses_scenes;         ///< if not empty, why every offer fails
-    int full_offers = 0;                ///< so many are told that there is no room
-    std::size_t dies_after_chunks = 0;  ///< forgets the upload once after so many; 0: never
+    std::string refuses_scenes;           ///< if not empty, why every offer fails
+    int full_offers = 0;                  ///< so many are told that there is no room
+    std::size_t dies_after_chunks = 0;    ///< forgets the upload once after so many; 0: never
+    std::set<std::uint32_t> finds_wrong;  ///< chunks that it throws away once, when all are there
     bool answers = true;
     bool says_ready_at_once = false;  ///< to every offer, true or not
   };
@@ -142,7 +143,11 @@ class ScriptedDaemon {
       offered_ = false;
       return;
     }
-    if (heard_.upload.size() == offer_.chunk_digests.size()) {
+    if (heard_.upload.size() == offer_.chunk_digests.size() && !script_.finds_wrong.empty()) {
+      for (const std::uint32_t index : std::exchange(script_.finds_wrong, {})) heard_.upload.erase(index);
+      tell(SceneState::building, false);
+      tell(SceneState::uploading, true);
+    } else if (heard_.upload.size() == offer_.chunk_digests.size()) {
       script_.scenes.insert(offer_.scene_digest);
       tell(SceneState::building, false);
       tell(SceneState::ready, false);

@@ -111,6 +111,24 @@ TEST(SceneUpload, OffersAgainWhenTheDaemonForgot) {
   EXPECT_TRUE(joined(daemon.heard().upload) == the_scene()->bytes);
 }
 
+TEST(SceneUpload, SendsAgainAtOnceWhatTurnedOutWrong) {
+  ScriptedDaemon::Script script;
+  script.finds_wrong = {3, 7};
+  ScriptedDaemon daemon(script);
+  SceneUpload upload = upload_to(daemon.endpoint());
+  ASSERT_TRUE(drive_to(upload, SceneUpload::State::uploading));
+  // With a clock that stands still no silence is long enough to ask for another reason.
+  const double still_s = now_s();
+  for (const double end_s = still_s + 20.0; upload.state() != SceneUpload::State::ready && now_s() < end_s;) {
+    (void)upload.poll(still_s);
+    upload.wait(0.001);
+  }
+  ASSERT_EQ(upload.state(), SceneUpload::State::ready);
+  EXPECT_EQ(daemon.heard().offers, 2u);
+  EXPECT_EQ(daemon.heard().chunks, the_scene()->offer.chunk_digests.size() + 2);
+  EXPECT_TRUE(joined(daemon.heard().upload) == the_scene()->bytes);
+}
+
 TEST(SceneUpload, WaitsForADaemonThatComesLater) {
   std::string endpoint;
   { endpoint = ScriptedDaemon({}).endpoint(); }

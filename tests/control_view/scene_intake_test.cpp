@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstring>
 #include <functional>
+#include <future>
 #include <map>
 #include <random>
 #include <thread>
@@ -60,8 +61,8 @@ struct Intake {
     do {
       intake.step(now_s);
       std::this_thread::yield();
-    } while (intake.is_building() && std::chrono::steady_clock::now() < end);
-    EXPECT_FALSE(intake.is_building());
+    } while (intake.is_busy() && std::chrono::steady_clock::now() < end);
+    EXPECT_FALSE(intake.is_busy());
   }
   void send(const PeerId& peer, const Parcel& parcel) {
     intake.offer(peer, parcel.offer, now_s);
@@ -143,6 +144,141 @@ TEST(SceneIntake, KeepsWhatOthersSentWhenOnePeerLies) {
   daemon.intake.take(k_honest, parcel.chunk(1), daemon.now_s);
   daemon.settle();
   EXPECT_EQ(daemon.last_told(k_honest).state, SceneState::ready);
+}
+
+/// A chunk of the right length that is not the parcel's.
+SceneChunk forged_chunk(const Parcel& parcel, std::uint32_t index, std::uint8_t salt = 1) {
+  SceneChunk forged = parcel.chunk(index);
+  forged.bytes[100] ^= salt;
+  return forged;
+}
+
+TEST(SceneIntake, TellsALiarBeforeTheUploadIsWhole) {
+  Intake daemon;
+  const Parcel parcel(bulky_scene(21));
+  daemon.intake.offer(k_honest, parcel.offer, daemon.now_s);
+  daemon.intake.take(k_honest, parcel.chunk(0), daemon.now_s);
+  daemon.intake.take(k_liar, forged_chunk(parcel, 1), daemon.now_s);
+  daemon.settle();
+  const SceneStatus told = daemon.last_told(k_liar);
+  EXPECT_EQ(told.state, SceneState::failed);
+  EXPECT_NE(told.text.find("chunk 1"), std::string::npos) << told.text;
+  const SceneStatus status = daemon.last_told(k_honest);
+  EXPECT_EQ(status.state, SceneState::uploading);
+  EXPECT_EQ(chunks_held(status), std::vector<std::uint32_t>{0});
+
+  for (const std::uint32_t i : {1u, 2u}) daemon.intake.take(k_honest, parcel.chunk(i), daemon.now_s);
+  daemon.settle();
+  EXPECT_EQ(daemon.last_told(k_honest).state, SceneState::ready);
+  EXPECT_TRUE(daemon.told(k_liar).empty());
+}
+
+TEST(SceneIntake, ChecksWhatWasSentBeforeWhenASecondPeerComes) {
+  Intake daemon;
+  const Parcel parcel(bulky_scene(22));
+  daemon.intake.offer(k_liar, parcel.offer, daemon.now_s);
+  daemon.intake.take(k_liar, forged_chunk(parcel, 0), daemon.now_s);
+  daemon.intake.take(k_liar, parcel.chunk(1), daemon.now_s);  // a liar's right ones are right
+  daemon.settle();
+  EXPECT_EQ(daemon.last_told(k_liar).state, SceneState::uploading);  // alone it is checked when it is done
+  daemon.intake.offer(k_honest, parcel.offer, daemon.now_s);
+  daemon.settle();
+  EXPECT_EQ(daemon.last_told(k_liar).state, SceneState::failed);
+  EXPECT_EQ(chunks_held(daemon.last_told(k_honest)), std::vector<std::uint32_t>{1});
+  for (const std::uint32_t i : {0u, 2u}) daemon.intake.take(k_honest, parcel.chunk(i), daemon.now_s);
+  daemon.settle();
+  EXPECT_EQ(daemon.last_told(k_honest).state, SceneState::ready);
+}
+
+TEST(SceneIntake, ChecksALonePeerWhenItIsDone) {
+  Intake daemon;
+  const Parcel parcel(bulky_scene(23));
+  daemon.intake.offer(k_liar, parcel.offer, daemon.now_s);
+  daemon.intake.take(k_liar, forged_chunk(parcel, 0), daemon.now_s);
+  for (const std::uint32_t i : {1u, 2u}) daemon.intake.take(k_liar, parcel.chunk(i), daemon.now_s);
+  daemon.settle();
+  EXPECT_EQ(daemon.last_told(k_liar).state, SceneState::failed);
+  EXPECT_EQ(daemon.scenes.size(), 0u);
+  // The same client on another connection, in its right mind.
+  daemon.intake.offer(k_honest, parcel.offer, daemon.now_s);
+  EXPECT_EQ(chunks_held(daemon.last_told(k_honest)), (std::vector<std::uint32_t>{1, 2}));
+  daemon.intake.take(k_honest, parcel.chunk(0), daemon.now_s);
+  daemon.settle();
+  EXPECT_EQ(daemon.last_told(k_honest).state, SceneState::ready);
+}
+
+// An honest client does what the statuses say; others forge chunks, two each. However they race, the scene
+// that comes about is the honest one's and nobody honest is blamed.
+TEST(SceneIntake, EndsWithTheRightSceneHoweverLiarsRace) {
+  const Parcel parcel(bulky_scene(24, 11 * k_scene_chunk_bytes / 2));
+  const auto name = [](std::size_t lie) { return "liar " + std::to_string(lie / 2); };
+  std::size_t caught = 0;
+  for (std::uint64_t seed = 0; seed < 30; ++seed) {
+    std::mt19937_64 random(seed);
+    Intake daemon;
+    std::uint64_t triangles = 0;
+    daemon.make_engine = [&](const Scene& scene) { triangles = scene.triangle_count(); };
+    std::size_t lies = 0;
+    for (int round = 0; round < 100 && triangles == 0; ++round) {
+      daemon.intake.offer(k_honest, parcel.offer, daemon.now_s);
+      const auto held = chunks_held(daemon.last_told(k_honest));
+      for (std::uint32_t i = 0; i < parcel.chunk_count(); ++i) {
+        if (random() % 2 == 0 && lies < 60) {
+          const auto index = static_cast<std::uint32_t>(random() % parcel.chunk_count());
+          const auto salt = static_cast<std::uint8_t>(1 + random() % 255);
+          daemon.intake.take(name(lies++), forged_chunk(parcel, index, salt), daemon.now_s);
+        }
+        if (std::ranges::find(held, i) == held.end())
+          daemon.intake.take(k_honest, parcel.chunk(i), daemon.now_s);
+        if (random() % 4 == 0) daemon.intake.step(daemon.now_s);
+      }
+      daemon.settle();
+    }
+    EXPECT_EQ(triangles, 4u) << "seed " << seed;
+    for (const SceneStatus& status : daemon.told(k_honest)) EXPECT_NE(status.state, SceneState::failed);
+    for (std::size_t lie = 0; lie < lies; lie += 2) {
+      for (const SceneStatus& status : daemon.told(name(lie)))
+        caught += status.text.find("digest") != std::string::npos;
+    }
+  }
+  EXPECT_GT(caught, 30u);
+}
+
+TEST(SceneIntake, TellsEveryOneOfSeveralLiars) {
+  Intake daemon;
+  const Parcel parcel(bulky_scene(25));
+  daemon.intake.offer(k_honest, parcel.offer, daemon.now_s);
+  daemon.intake.take(k_liar, forged_chunk(parcel, 0), daemon.now_s);
+  daemon.intake.take(k_other, forged_chunk(parcel, 2, 3), daemon.now_s);
+  daemon.intake.take(k_honest, parcel.chunk(1), daemon.now_s);
+  daemon.settle();
+  EXPECT_EQ(daemon.last_told(k_liar).state, SceneState::failed);
+  EXPECT_EQ(daemon.last_told(k_other).state, SceneState::failed);
+  const SceneStatus status = daemon.last_told(k_honest);
+  EXPECT_EQ(status.state, SceneState::uploading);
+  EXPECT_EQ(chunks_held(status), std::vector<std::uint32_t>{1});
+}
+
+TEST(SceneIntake, FindsALiarWhileAnotherScenesEngineIsMade) {
+  Intake daemon;
+  std::promise<void> may_end;
+  daemon.make_engine = [ended = may_end.get_future().share()](const Scene&) { ended.wait(); };
+  const Parcel slow(bulky_scene(26)), other(bulky_scene(27));
+  daemon.intake.offer(k_other, slow.offer, daemon.now_s);
+  for (std::uint32_t i = 0; i < 3; ++i) daemon.intake.take(k_other, slow.chunk(i), daemon.now_s);
+  daemon.intake.offer(k_honest, other.offer, daemon.now_s);
+  daemon.intake.take(k_liar, forged_chunk(other, 0), daemon.now_s);
+  std::vector<SceneStatus> told;
+  for (const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+       told.empty() && std::chrono::steady_clock::now() < end; std::this_thread::yield()) {
+    daemon.intake.step(daemon.now_s);
+    told = daemon.told(k_liar);
+  }
+  may_end.set_value();
+  ASSERT_FALSE(told.empty());
+  EXPECT_EQ(told.back().state, SceneState::failed);
+  daemon.settle();
+  EXPECT_EQ(daemon.last_told(k_other).state, SceneState::ready);
 }
 
 TEST(SceneIntake, RefusesAnOfferWhoseDigestIsNotItsOwn) {
@@ -259,6 +395,7 @@ TEST(SceneIntake, IsNotKeptFullByOffersAlone) {
   daemon.now_s += 0.9 * SceneIntake::k_idle_s;
   daemon.intake.offer(k_other, parcel.offer, daemon.now_s);
   daemon.intake.take(k_other, parcel.chunk(0), daemon.now_s);  // held already
+  daemon.settle();
   daemon.now_s += 0.2 * SceneIntake::k_idle_s;
   daemon.intake.step(daemon.now_s);
   daemon.intake.offer(k_honest, parcel.offer, daemon.now_s);

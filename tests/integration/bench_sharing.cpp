@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <exception>
 #include <fstream>
 #include <memory>
@@ -40,6 +41,15 @@ double now_s() {
   return std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
 }
 
+/// User and system time that a process has used, all its threads.
+double cpu_s(pid_t process) {
+  clockid_t clock{};
+  timespec used{};
+  if (clock_getcpuclockid(process, &clock) != 0 || clock_gettime(clock, &used) != 0)
+    throw std::runtime_error("no clock of process " + std::to_string(process));
+  return static_cast<double>(used.tv_sec) + 1e-9 * static_cast<double>(used.tv_nsec);
+}
+
 double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   return values.empty() ? 0.0 : values[values.size() / 2];
@@ -51,8 +61,9 @@ double share(std::vector<double> values, double part) {
                         : values[static_cast<std::size_t>(part * static_cast<double>(values.size() - 1))];
 }
 
-/// Seconds from the first byte to the receiver's word that it has the last.
-double plain_copy_s(std::span<const std::uint8_t> bytes) {
+/// Seconds from the first byte to the receiver's word that it has the last. `copy` is memory that was used
+/// before: taking it from the system fresh, as the daemon has to, takes about as long again.
+double plain_copy_s(std::span<const std::uint8_t> bytes, std::span<std::uint8_t> copy) {
   const int listener = socket(AF_INET, SOCK_STREAM, 0);
   sockaddr_in address{};
   address.sin_family = AF_INET;
@@ -63,7 +74,6 @@ double plain_copy_s(std::span<const std::uint8_t> bytes) {
   getsockname(listener, reinterpret_cast<sockaddr*>(&address), &length);
   std::thread receiver([&] {
     const int peer = accept(listener, nullptr, nullptr);
-    std::vector<std::uint8_t> copy(bytes.size());
     std::size_t got = 0;
     while (got < copy.size()) {
       const ssize_t some = read(peer, copy.data() + got, copy.size() - got);
@@ -140,25 +150,62 @@ Welcome open_session(ClientLink& link, const SceneDigest& digest) {
   throw std::runtime_error("no Welcome");
 }
 
+/// What one way took in each round.
+struct Times {
+  std::vector<double> wall_s, client_s, daemon_s;  ///< the last two: processor time
+};
+
+/// "NAME: 40.0 ms (38.1 to 45.2), processor time 20.1 + 30.2 ms"
+void print(const char* name, const Times& times) {
+  std::printf("%s: %.1f ms (%.1f to %.1f)", name, 1e3 * median(times.wall_s), 1e3 * share(times.wall_s, 0.0),
+              1e3 * share(times.wall_s, 1.0));
+  if (!times.client_s.empty()) std::printf(", processor time %.1f", 1e3 * median(times.client_s));
+  if (!times.daemon_s.empty()) std::printf(" + %.1f", 1e3 * median(times.daemon_s));
+  std::printf(times.client_s.empty() ? "\n" : " ms\n");
+}
+
+/// Notes in `times` what passed since it was made, when told to.
+class Lap {
+ public:
+  explicit Lap(pid_t daemon = -1) : daemon_(daemon) {}
+  void note(Times& times) const {
+    times.wall_s.push_back(now_s() - began_s_);
+    times.client_s.push_back(cpu_s(getpid()) - client_s_);
+    if (daemon_ >= 0) times.daemon_s.push_back(cpu_s(daemon_) - daemon_s_);
+  }
+
+ private:
+  pid_t daemon_;
+  double client_s_ = cpu_s(getpid()), daemon_s_ = daemon_ < 0 ? 0.0 : cpu_s(daemon_), began_s_ = now_s();
+};
+
 void bench_upload(const std::shared_ptr<const PackedScene>& scene) {
-  std::vector<double> plain, held, ready, resumed_share, second;
+  Times plain, held, ready, second;
+  std::vector<double> ratio, resumed_share;
+  std::vector<std::uint8_t> copy(scene->bytes.size());
   for (int round = 0; round < k_rounds; ++round) {
-    plain.push_back(plain_copy_s(scene->bytes));
+    {
+      const Lap lap;
+      const double took_s = plain_copy_s(scene->bytes, copy);
+      lap.note(plain);
+      plain.wall_s.back() = took_s;
+    }
     {
       Daemon daemon({"--log", "error"});
-      const double began_s = now_s();
+      const Lap lap(daemon.process_id());
       SceneUpload upload(daemon.endpoint(), {}, scene, 0.25);
       pump(upload, all_held);
-      held.push_back(now_s() - began_s);
+      lap.note(held);
       pump(upload, is_ready);
-      ready.push_back(now_s() - began_s);
+      lap.note(ready);
+      ratio.push_back(held.wall_s.back() / plain.wall_s.back());
 
-      const double second_began_s = now_s();
+      const Lap second_lap(daemon.process_id());
       SceneUpload same(daemon.endpoint(), {}, scene, 0.25);
       pump(same, is_ready);
       ClientLink link(daemon.endpoint());
       (void)open_session(link, scene->offer.scene_digest);
-      second.push_back(now_s() - second_began_s);
+      second_lap.note(second);
     }
     {
       Daemon daemon({"--log", "error"});
@@ -172,13 +219,14 @@ void bench_upload(const std::shared_ptr<const PackedScene>& scene) {
                               static_cast<double>(scene->bytes.size()));
     }
   }
-  std::printf("plain copy over loopback: %.1f ms\n", 1e3 * median(plain));
-  std::printf("upload, until the daemon has all: %.1f ms, %.2f times the plain copy\n", 1e3 * median(held),
-              median(held) / median(plain));
-  std::printf("upload, until it is ready (digests checked, engine made): %.1f ms\n", 1e3 * median(ready));
+  print("plain copy over loopback", plain);
+  print("upload, until the daemon has all", held);
+  std::printf("  %.2f times the plain copy (%.2f to %.2f in one round)\n",
+              median(held.wall_s) / median(plain.wall_s), share(ratio, 0.0), share(ratio, 1.0));
+  print("upload, until it is ready (digests checked, engine made)", ready);
   std::printf("resumed after half: %.2f of the bytes sent again or for the first time\n",
               median(resumed_share));
-  std::printf("second client, same scene, until its session is open: %.1f ms\n", 1e3 * median(second));
+  print("second client, same scene, until its session is open", second);
 }
 
 /// One that always has a request on its way.

@@ -1,5 +1,6 @@
 #include "protocol/endpoint_link.hpp"
 
+#include <algorithm>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -30,7 +31,7 @@ Bytes bytes_of(std::string_view text) {
   return Bytes(begin, begin + text.size());
 }
 
-std::string text_of(const Bytes& bytes) {
+std::string text_of(std::span<const std::byte> bytes) {
   return std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size());
 }
 
@@ -148,11 +149,55 @@ TEST(Link, ReturnsEmptyWithinItsTimeout) {
 TEST(Link, CarriesEmptyFramesAndLargeOnes) {
   ServerLink server(k_loopback);
   ClientLink client(server.bound_endpoint());
-  ASSERT_TRUE(client.send({}));
+  ASSERT_TRUE(client.send(Bytes{}));
   EXPECT_TRUE(server.receive(k_patience).value().frame.empty());
   const Bytes large(8u << 20, std::byte{0x5A});
   ASSERT_TRUE(client.send(large));
-  EXPECT_EQ(server.receive(k_patience).value().frame, large);
+  EXPECT_TRUE(std::ranges::equal(server.receive(k_patience).value().frame, large));
+}
+
+TEST(Link, SendsAFrameFromWhereItLiesAndThenLetsGoOfIt) {
+  ServerLink server(k_loopback);
+  ClientLink client(server.bound_endpoint());
+  auto bytes = std::make_shared<const Bytes>(1u << 20, std::byte{0x5A});
+  const std::weak_ptr<const Bytes> held = bytes;
+  ASSERT_TRUE(client.send(Frame(bytes, *bytes)));
+  EXPECT_EQ(client.bytes_sent(), 1u << 20);
+  bytes.reset();
+  const auto incoming = server.receive(k_patience);
+  ASSERT_TRUE(incoming);
+  EXPECT_EQ(incoming->frame.size(), 1u << 20);
+  EXPECT_EQ(std::ranges::count(incoming->frame, std::byte{0x5A}), 1 << 20);
+  EXPECT_TRUE(eventually([&] {
+    (void)client.receive(1ms);
+    return held.expired();
+  }));
+}
+
+TEST(Link, LeavesAFrameThatItDoesNotTakeToTheCaller) {
+  LinkOptions options;
+  options.send_queue_length = 2;
+  const auto bytes = std::make_shared<const Bytes>(bytes_of("frame"));
+  const Frame frame(bytes, *bytes);
+  std::optional<ClientLink> client(std::in_place, "tcp://127.0.0.1:9", options);  // nobody listens
+  while (client->send(frame)) {
+  }
+  EXPECT_EQ(text_of(frame), "frame");
+  client.reset();
+  EXPECT_TRUE(eventually([&] { return bytes.use_count() == 2; }));
+}
+
+TEST(Link, KeepsAReceivedFrameWhileOthersCome) {
+  ServerLink server(k_loopback);
+  ClientLink client(server.bound_endpoint());
+  std::vector<Frame> kept;
+  for (const char* text : {"first", "second", "third"}) {
+    ASSERT_TRUE(client.send(bytes_of(text)));
+    kept.push_back(server.receive(k_patience).value().frame);
+  }
+  EXPECT_EQ(text_of(kept[0]), "first");
+  EXPECT_EQ(text_of(kept[1]), "second");
+  EXPECT_EQ(text_of(kept[2]), "third");
 }
 
 TEST(Link, DropsFramesOverTheLimitAndGoesOn) {

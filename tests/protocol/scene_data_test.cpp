@@ -126,11 +126,5 @@ TEST(SceneDigests, CoverEveryByteAndEveryCount) {
   EXPECT_NE(scene_digest_of(swapped), offer.scene_digest);
 }
 
-TEST(SceneChunks, AreWrittenTheSameWithAndWithoutACopy) {
-  const std::vector<std::uint8_t> bytes(1000, 3);
-  const SceneDigest digest{1, 2, 3};
-  EXPECT_EQ(encode_scene_chunk(digest, 4, bytes), encode(SceneChunk{digest, 4, bytes}));
-}
-
 }  // namespace
 }  // namespace sightline
