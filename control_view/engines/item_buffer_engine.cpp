@@ -17,6 +17,8 @@
 #include "control_view/engines/moved_objects.hpp"
 #include "control_view/engines/occlusion_walk.hpp"
 #include "control_view/engines/pixel_counter.hpp"
+#include "control_view/engines/raster/needle_index.hpp"
+#include "control_view/engines/raster/raster_view.hpp"
 #include "control_view/engines/screen_box.hpp"
 #include "control_view/engines/stopwatch.hpp"
 
@@ -36,6 +38,7 @@ class ItemBufferEngine final : public VisibilityEngine {
         hierarchy_(scene.object_bounds),
         moved_(scene),
         detail_(scene),
+        needles_(scene),
         counter_(make_pixel_counter(options.counter, scene.object_count())),
         counts_in_memory_(options.counter == "histogram"),
         sum_(scene.object_count()),
@@ -59,6 +62,7 @@ class ItemBufferEngine final : public VisibilityEngine {
     gpu_scene_.set_transforms(change.ids, change.scene_from_object);
     hierarchy_.move(change.ids, change.bounds);
     detail_.move(change.ids, change.scene_from_object);
+    needles_.move(change.ids, change.scene_from_object);
   }
 
   EngineStats count(const ViewQuery& query, PixelCounts& counts) override {
@@ -103,6 +107,7 @@ class ItemBufferEngine final : public VisibilityEngine {
   void count_eye(const Frame& frame, EngineStats& stats) {
     Stopwatch watch;
     ++frame_stamp_;
+    find_needles(frame);
     choose_first(frame);
     stats.cull_s += watch.lap_s();
     draw_first(frame, stats);
@@ -153,7 +158,33 @@ class ItemBufferEngine final : public VisibilityEngine {
       return !is_boxed(id) && frame.projector.project(hierarchy_.bounds_of(id)).has_value();
     });
     if (drawn_.empty()) choose_nearest(frame);
+    append_with_needles(has_opaque_, drawn_);
     for (const ObjectId id : drawn_) drawn_in_[index_of(id)] = frame_stamp_;
+  }
+
+  /// The objects that no bounds hold, see NeedleIndex. Ascending.
+  void find_needles(const Frame& frame) {
+    const raster::RasterView view =
+        raster::view_of(frame.eye, gpu_scene_.world_origin_m(), frame.buffer.size());
+    const raster::RasterRegion part{
+        static_cast<std::int32_t>(frame.area.x), static_cast<std::int32_t>(frame.area.y),
+        static_cast<std::int32_t>(frame.area.size.width), static_cast<std::int32_t>(frame.area.size.height)};
+    needles_.find(raster::best_kernel(), view, part, found_needles_);
+    with_needles_.clear();
+    for (const raster::Needle& needle : found_needles_) {
+      const ObjectId id{needle.object};
+      if (!with_needles_.empty() && with_needles_.back() == id) continue;
+      if (!is_boxed(id) && !hierarchy_.bounds_of(id).empty()) with_needles_.push_back(id);
+    }
+  }
+
+  /// Adds those of with_needles_ that have the layer to ascending ids.
+  void append_with_needles(const std::vector<std::uint8_t>& has_layer, std::vector<ObjectId>& ids) const {
+    const auto before = static_cast<std::ptrdiff_t>(ids.size());
+    std::copy_if(with_needles_.begin(), with_needles_.end(), std::back_inserter(ids),
+                 [&](ObjectId id) { return has_layer[index_of(id)] != 0; });
+    std::inplace_merge(ids.begin(), ids.begin() + before, ids.end());
+    ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
   }
 
   void choose_nearest(const Frame& frame) {
@@ -252,6 +283,7 @@ class ItemBufferEngine final : public VisibilityEngine {
       sum_.add(eye_counts_.ids[i], eye_counts_.pixels[i]);
     remember(frame);
     std::sort(blended_.begin(), blended_.end());
+    append_with_needles(has_blended_, blended_);
     book(counter_->add_blended(view, blended_, sum_), stats);
   }
 
@@ -278,6 +310,7 @@ class ItemBufferEngine final : public VisibilityEngine {
   ObjectHierarchy hierarchy_;
   MovedObjects moved_;
   DetailTest detail_;
+  raster::NeedleIndex needles_;
   std::unique_ptr<PixelCounter> counter_;
   bool counts_in_memory_;
   CountAccumulator sum_, eye_sum_;
@@ -293,6 +326,8 @@ class ItemBufferEngine final : public VisibilityEngine {
   std::vector<std::uint64_t> boxed_in_;  ///< per object: the stamp of the query that boxed it last
   std::uint64_t query_stamp_ = 0;
   std::vector<NearestFirstEntry> heap_;
+  std::vector<raster::Needle> found_needles_;
+  std::vector<ObjectId> with_needles_;
   std::vector<ObjectId> drawn_, pass_, blended_;  ///< drawn_ and blended_ ascend
   std::vector<Candidate> candidates_;
   std::vector<ItemCode> codes_, after_codes_;

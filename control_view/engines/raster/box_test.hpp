@@ -32,8 +32,8 @@ inline ScreenBox screen_box_of(const Aabb& box, const BoxView& view, const Targe
   constexpr float k_rounding = 4e-6f;
   // A pixel centre may lie a few hundredths of a pixel outside the triangle that snapping gave it to, and its
   // depth is extrapolated there: for a surface seen edge-on by any part of the box's own range of depth. So
-  // allow as much again as the box is deep, and 1e-3 of the depth (found: 1.2e-4 at most). Only a sliver
-  // thinner than a sub-pixel goes farther.
+  // allow as much again as the box is deep, and 1e-3 of the depth (found: 1.2e-4 at most). What goes farther
+  // has no thickness in the image: see NeedleIndex.
   constexpr float k_sliver_depth = 1e-3f;
   const float low[3] = {box.min.x, box.min.y, box.min.z};
   const float high[3] = {box.max.x, box.max.y, box.max.z};

@@ -17,6 +17,7 @@ class RegionDrawer : RegionWalk {
 
   RegionResult draw() {
     draw_first(job_.first, job_.first_count);
+    draw_needles();
     walk([this](const ScreenBox& box, std::uint32_t object) { draw_object(box, object); });
     count_blended();
     count_opaque();
@@ -37,21 +38,71 @@ class RegionDrawer : RegionWalk {
     }
   }
 
+  /// What no bounds hold. Objects with blended needles are candidates whatever hides them.
+  void draw_needles() {
+    for (std::uint32_t i = 0; i < job_.needle_count; ++i) {
+      const Item& item = scene_.items[job_.needles[i].item];
+      const ScreenBox box = screen_box(scene_.bounds[item.object]);
+      if (!box.visible) continue;
+      if (!item.blended) {
+        drawer_.begin(item, !box.unclipped, 0);
+        draw_cluster(item, job_.needles[i].cluster, item.first_rank, !box.unclipped);
+      } else if (!has_blended_needles(item.object)) {
+        memory_.blended_candidates[blended_count_++] = item.object;
+        with_blended_needles_ = blended_count_;
+      }
+    }
+  }
+  /// Those candidates come first, and ascend as needles do.
+  [[nodiscard]] bool has_blended_needles(std::uint32_t object) const {
+    std::uint32_t first = 0, end = with_blended_needles_;
+    while (first < end) {
+      const std::uint32_t middle = (first + end) / 2;
+      if (memory_.blended_candidates[middle] < object) {
+        first = middle + 1;
+      } else {
+        end = middle;
+      }
+    }
+    return first < with_blended_needles_ && memory_.blended_candidates[first] == object;
+  }
+
   /// Once the opaque depth is finished.
   void count_blended() {
     for (std::uint32_t i = 0; i < blended_count_; ++i) {
       const std::uint32_t object = memory_.blended_candidates[i];
       const ScreenBox box = screen_box(scene_.bounds[object]);
-      if (!box.visible || hidden(box)) continue;
+      const bool has_needles = i < with_blended_needles_;
+      if (!box.visible || (!has_needles && hidden(box))) continue;
       ++result_.drawn_objects;
       const std::int32_t mark = ++memory_.blended_draws;
       std::uint32_t pixels = 0;
       for (std::uint32_t item = scene_.first_item[object]; item < scene_.first_item[object + 1]; ++item) {
         if (!scene_.items[item].blended) continue;
         draw_item(scene_.items[item], box, mark);
+        if (has_needles) draw_needles_of(item, !box.unclipped);
         pixels += drawer_.blended_pixels();
       }
       if (pixels > 0) add_count(object, pixels, shown_in(box));
+    }
+  }
+
+  /// Of a blended item that has just been drawn.
+  void draw_needles_of(std::uint32_t item, bool may_clip) {
+    const std::uint32_t object = scene_.items[item].object;
+    std::uint32_t first = 0, end = job_.needle_count;
+    while (first < end) {
+      const std::uint32_t middle = (first + end) / 2;
+      if (scene_.items[job_.needles[middle].item].object < object) {
+        first = middle + 1;
+      } else {
+        end = middle;
+      }
+    }
+    for (std::uint32_t i = first; i < job_.needle_count; ++i) {
+      if (scene_.items[job_.needles[i].item].object != object) break;
+      if (job_.needles[i].item != item) continue;
+      draw_cluster(scene_.items[item], job_.needles[i].cluster, 0, may_clip);
     }
   }
 
@@ -80,7 +131,8 @@ class RegionDrawer : RegionWalk {
 
   void draw_object(const ScreenBox& box, std::uint32_t object) {
     if (hidden(box)) return;
-    if (scene_.has_blended[object] != 0) memory_.blended_candidates[blended_count_++] = object;
+    if (scene_.has_blended[object] != 0 && !has_blended_needles(object))
+      memory_.blended_candidates[blended_count_++] = object;
     if (scene_.has_opaque[object] == 0) return;
     for (std::uint32_t item = scene_.first_item[object]; item < scene_.first_item[object + 1]; ++item) {
       if (!scene_.items[item].blended) draw_item(scene_.items[item], box, 0);
@@ -193,6 +245,7 @@ class RegionDrawer : RegionWalk {
   RegionMemory& memory_;
   ItemDrawer drawer_;
   std::uint32_t blended_count_ = 0;
+  std::uint32_t with_blended_needles_ = 0;  ///< of blended_candidates, the first ones
   RegionResult result_{};
 };
 

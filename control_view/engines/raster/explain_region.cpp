@@ -40,7 +40,10 @@ OwnedPixels explain_region(const KernelFunctions& kernel, const ExplainJob& job,
     const bool any = std::any_of(codes.begin(), codes.end(), [](ItemCode code) { return code != 0; });
     if (!any) return owned;
   }
-  (void)worker.draw_image(kernel, draw_job(job, *job.whole), images.whole);
+  RegionJob whole = draw_job(job, *job.whole);
+  whole.needles = job.needles;
+  whole.needle_count = job.needle_count;
+  (void)worker.draw_image(kernel, whole, images.whole);
 
   std::map<ItemCode, std::uint64_t> hidden_by;
   for (std::size_t i = 0; i < images.whole.codes.size(); ++i) {

@@ -31,6 +31,8 @@ struct ExplainJob {
   const KernelScene* sole = nullptr;  ///< the object alone, see SoleObject; null: its box is looked for
   float box_nearest = 0.0f;           ///< of the box, which then fills the region
   const RasterView* view = nullptr;
+  const NeedleItem* needles = nullptr;  ///< of `whole`, see RegionJob
+  std::uint32_t needle_count = 0;
   RasterRegion region;
   ItemCode code = k_background_code;  ///< the object's in `whole`
 };

@@ -112,10 +112,15 @@ class ViewExplainer {
     const ImageSize image{query_.size.width * scale, query_.size.height * scale};
     if (scale > 1 && (image.width > k_max_image_side || image.height > k_max_image_side)) return false;
     for (const Eye& eye : query_.eyes) views_.push_back(view_of(eye, with_.scene.world_origin_m, image));
+    needles_.resize(query_.eyes.size());
     std::uint64_t pixels = 0;
     for (std::size_t eye = 0; eye < query_.eyes.size(); ++eye) {
       const glm::mat4 clip_from_scene =
           gl::depth_clip_from_scene(query_.eyes[eye], with_.scene.world_origin_m);
+      const RasterRegion whole{0, 0, static_cast<std::int32_t>(image.width),
+                               static_cast<std::int32_t>(image.height)};
+      with_.needles.find(with_.kernel, views_[eye], whole, found_needles_);
+      with_.scene.find_items_of(found_needles_, needles_[eye]);
       const BoxProjector projector(clip_from_scene, image, gl::PixelRect{0, 0, image});
       const Aabb box = boxed_ ? box_for(query_.eyes[eye], image) : bounds_;
       const std::optional<ScreenBox> screen = projector.project(box);
@@ -132,6 +137,8 @@ class ViewExplainer {
     job.sole = boxed_ ? nullptr : &sole_.scene();
     job.box_nearest = screen.nearest_depth;
     job.view = &views_[eye];
+    job.needles = needles_[eye].data();
+    job.needle_count = static_cast<std::uint32_t>(needles_[eye].size());
     job.code = code_of(id_);
     const auto left = static_cast<std::int32_t>(screen.left), right = static_cast<std::int32_t>(screen.right);
     const auto top = static_cast<std::int32_t>(screen.top);
@@ -174,6 +181,8 @@ class ViewExplainer {
   SoleObject sole_;
   std::optional<WorldBox> boxed_;
   std::vector<RasterView> views_;
+  std::vector<Needle> found_needles_;
+  std::vector<std::vector<NeedleItem>> needles_;  ///< by eye
   std::vector<ExplainJob> pieces_;
 };
 

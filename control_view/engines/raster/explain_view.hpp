@@ -5,6 +5,7 @@
 #include "common/object_hierarchy.hpp"
 #include "control_view/engine.hpp"
 #include "control_view/engines/raster/kernel.hpp"
+#include "control_view/engines/raster/needle_index.hpp"
 #include "control_view/engines/raster/region_worker.hpp"
 #include "control_view/engines/worker_threads.hpp"
 
@@ -15,6 +16,7 @@ struct ExplainWith {
   const RasterScene& scene;
   const KernelScene& kernel_scene;
   const ObjectHierarchy& hierarchy;
+  NeedleIndex& needles;
   const KernelFunctions& kernel;
   std::vector<RegionWorker>& workers;
   WorkerThreads& threads;

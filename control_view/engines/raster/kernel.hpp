@@ -114,6 +114,8 @@ struct RegionJob {
   std::uint32_t first_count = 0;
   const BoxedItem* boxes = nullptr;
   std::uint32_t box_count = 0;
+  const NeedleItem* needles = nullptr;  ///< to be drawn whatever hides them; by object
+  std::uint32_t needle_count = 0;
 };
 
 struct RegionResult {
@@ -175,11 +177,40 @@ using ProbeRegion = RegionResult (*)(const ProbeJob& job, RegionMemory& memory);
 /// Copies the region last drawn into a whole view's depth.
 using CopyDepth = void (*)(const RasterRegion& region, const RegionMemory& memory, const DepthImage& image);
 
+/// A corner snaps to 1/256 pixel: by half of that each way.
+inline constexpr float k_needle_snap_px = 1.0f / 256.0f;
+/// A needle's thickness in the image, in units of what rounding may move its corners by: where it is less as
+/// OpenGL has the corners, depth may go astray; where it is less as they really are, it may be anything.
+inline constexpr float k_needle_astray = 1.0f / 64.0f;
+inline constexpr float k_needle_sure = 2.0f;
+
+/// k_padding needles, corners in the scene frame as the vertex shader has them.
+struct NeedleGroup {
+  const float* x[3];
+  const float* y[3];
+  const float* z[3];
+};
+
+/// A part of a view that may show needles.
+struct NeedleView {
+  RasterView image;
+  RasterRegion part;
+  /// By how much rounding may move a corner in the image: pixels, and pixels at a distance w of 1.
+  float noise_px = 0.0f;
+  float noise_px_w = 0.0f;
+  float noise_w = 0.0f;  ///< the same for w
+};
+
+/// Bit i: needle i of the group may own the centre of a pixel of the part, with a depth that has gone astray.
+/// Errs towards set.
+using FindNeedles = unsigned (*)(const NeedleView& view, const NeedleGroup& group);
+
 /// What each instruction set has.
 struct KernelFunctions {
   DrawRegion draw;
   CopyDepth copy_depth;
   ProbeRegion probe;
+  FindNeedles find_needles;
 };
 
 struct RasterKernel {
@@ -190,6 +221,8 @@ struct RasterKernel {
 
 /// Best first.
 [[nodiscard]] std::span<const RasterKernel> raster_kernels();
+/// The first of them that this machine supports.
+[[nodiscard]] const KernelFunctions& best_kernel();
 
 namespace avx512 {
 extern const KernelFunctions k_functions;

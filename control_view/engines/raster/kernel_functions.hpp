@@ -2,6 +2,7 @@
 #pragma once
 
 #include "control_view/engines/raster/draw_region.hpp"
+#include "control_view/engines/raster/needle_test.hpp"
 #include "control_view/engines/raster/probe_region.hpp"
 
 namespace sightline::raster::SIGHTLINE_LANES {
@@ -15,7 +16,7 @@ inline RegionResult probe_region(const ProbeJob& job, RegionMemory& memory) {
 }
 
 constexpr KernelFunctions functions_of_these_lanes() {
-  return {draw_region, copy_depth, probe_region};
+  return {draw_region, copy_depth, probe_region, find_needles};
 }
 
 }  // namespace sightline::raster::SIGHTLINE_LANES

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 
 #include "control_view/engines/raster/kernel.hpp"
@@ -21,6 +22,13 @@ std::span<const RasterKernel> raster_kernels() {
       {"plain", true, &plain::k_functions},
   }};
   return k_kernels;
+}
+
+const KernelFunctions& best_kernel() {
+  const auto kernels = raster_kernels();
+  return *std::find_if(kernels.begin(), kernels.end(), [](const RasterKernel& kernel) {
+            return kernel.supported;
+          })->functions;
 }
 
 }  // namespace sightline::raster

@@ -19,6 +19,7 @@
 #include "control_view/engines/raster/kernel.hpp"
 #include "control_view/engines/raster/near_objects.hpp"
 #include "control_view/engines/raster/nearest_first.hpp"
+#include "control_view/engines/raster/needle_index.hpp"
 #include "control_view/engines/raster/raster_scene.hpp"
 #include "control_view/engines/raster/raster_view.hpp"
 #include "control_view/engines/raster/region_worker.hpp"
@@ -77,7 +78,8 @@ class RasterEngine final : public VisibilityEngine {
  public:
   RasterEngine(const Scene& scene, std::uint32_t threads, const raster::KernelFunctions& kernel,
                std::uint64_t most_ranks)
-      : scene_(scene, threads, most_ranks),
+      : needles_(scene),
+        scene_(scene, threads, most_ranks, needles_.triangles()),
         hierarchy_(scene.object_bounds),
         moved_(scene),
         sum_(scene.object_count()),
@@ -134,7 +136,8 @@ class RasterEngine final : public VisibilityEngine {
 
   Explanation explain(const ViewQuery& query, ObjectId id) override {
     place(query.boxed);
-    return raster::explain_view({scene_, kernel_scene_, hierarchy_, kernel_, workers_, threads_}, query, id);
+    return raster::explain_view({scene_, kernel_scene_, hierarchy_, needles_, kernel_, workers_, threads_},
+                                query, id);
   }
 
  private:
@@ -272,6 +275,7 @@ class RasterEngine final : public VisibilityEngine {
         moved_.turn_to(boxed.empty() ? edits_ : without_boxed(edits_, boxed, ++left_out_version_));
     if (change.ids.empty()) return;
     scene_.set_transforms(change.ids, change.scene_from_object);
+    needles_.move(change.ids, change.scene_from_object);
     hierarchy_.move(change.ids, change.bounds);
   }
 
@@ -297,6 +301,7 @@ class RasterEngine final : public VisibilityEngine {
     }
     // Views first: tasks point at them.
     for (const Eye& eye : query.eyes) views_.push_back(raster::view_of(eye, scene_.world_origin_m, image));
+    find_needles(query);
     for (std::size_t eye = 0; eye < query.eyes.size(); ++eye) {
       const glm::dvec3 eye_m = position_of(query.eyes[eye]) - scene_.world_origin_m;
       std::vector<std::uint32_t>& first = first_[eye];
@@ -319,6 +324,8 @@ class RasterEngine final : public VisibilityEngine {
         }
         task.job.boxes = boxes_[eye].data();
         task.job.box_count = static_cast<std::uint32_t>(boxes_[eye].size());
+        task.job.needles = needle_items_[eye].data();
+        task.job.needle_count = static_cast<std::uint32_t>(needle_items_[eye].size());
         task.job.first = first.data();
         task.job.first_count = static_cast<std::uint32_t>(first.size());
         task.eye = eye;
@@ -326,6 +333,20 @@ class RasterEngine final : public VisibilityEngine {
         task.strip = strip;
         tasks_.push_back(task);
       }
+    }
+  }
+
+  void find_needles(const ViewQuery& query) {
+    if (needle_items_.size() < query.eyes.size()) needle_items_.resize(query.eyes.size());
+    raster::RasterRegion part{0, 0, static_cast<std::int32_t>(query.size.width),
+                              static_cast<std::int32_t>(query.size.height)};
+    if (query.window) {
+      part.x = static_cast<std::int32_t>(query.window->x);
+      part.y = static_cast<std::int32_t>(query.window->y);
+    }
+    for (std::size_t eye = 0; eye < query.eyes.size(); ++eye) {
+      needles_.find(kernel_, views_[eye], part, found_needles_);
+      scene_.find_items_of(found_needles_, needle_items_[eye]);
     }
   }
 
@@ -397,6 +418,7 @@ class RasterEngine final : public VisibilityEngine {
     return scene;
   }
 
+  raster::NeedleIndex needles_;
   RasterScene scene_;
   ObjectHierarchy hierarchy_;
   MovedObjects moved_;
@@ -410,6 +432,8 @@ class RasterEngine final : public VisibilityEngine {
   std::vector<std::vector<std::uint32_t>> first_;      ///< by eye: the ranks to begin with
   std::vector<std::unique_ptr<raster::Strips>> cuts_;  ///< by eye
   std::vector<RasterView> views_;
+  std::vector<raster::Needle> found_needles_;
+  std::vector<std::vector<raster::NeedleItem>> needle_items_;  ///< by eye
   bool probing_ = false;
   std::vector<raster::WholeDepth> depths_;  ///< by eye
   std::vector<std::uint8_t> known_;         ///< by object, zero between queries

@@ -18,10 +18,11 @@ namespace sightline {
 /// threads that each own a part of the view need no more than that part.
 ///
 /// Exact for the pixels it samples, as item_buffer is, and equal to it: the arithmetic of vertices, clipping,
-/// snapping, fill rule and depth follows llvmpipe's step by step (tests compare the bits). Where the two may
-/// differ: a sliver's extrapolated depth may leave even the margin given to its object's box, and then it
-/// depends on the way how much of it is drawn; slivers of primitives cut by the view, which llvmpipe culls by
-/// runs of 341 triangles and we by primitive; alpha tests within rounding of the cutoff.
+/// snapping, fill rule and depth follows llvmpipe's step by step (tests compare the bits). What bounds cannot
+/// say is asked of a NeedleIndex: triangles whose corners lie on one line get any depth, also in front of
+/// what hides their object. Where the two may still differ: a triangle that is none, hidden, and seen so
+/// exactly edge-on that it gets such a depth all the same; slivers of primitives cut by the view, which
+/// llvmpipe culls by runs of 341 triangles and we by primitive; alpha tests within rounding of the cutoff.
 ///
 /// Sources: Pineda, "A Parallel Algorithm for Polygon Rasterization", 1988 (edge functions); Greene, Kass and
 /// Miller, "Hierarchical Z-Buffer Visibility", 1993 (test-then-draw over a hierarchy, temporal coherence);

@@ -70,7 +70,8 @@ void build(const Scene& scene, bool with_uvs, Part& part) {
 
 }  // namespace
 
-RasterScene::RasterScene(const Scene& scene, std::uint32_t threads, std::uint64_t most_ranks)
+RasterScene::RasterScene(const Scene& scene, std::uint32_t threads, std::uint64_t most_ranks,
+                         std::span<const MeshTriangle> needles)
     : world_origin_m(scene.world_origin_m) {
   const bool with_uvs =
       !scene.uvs.empty() && std::any_of(scene.materials.begin(), scene.materials.end(),
@@ -106,10 +107,52 @@ RasterScene::RasterScene(const Scene& scene, std::uint32_t threads, std::uint64_
     part.built.reset();
   }
 
+  append_needles(scene, needles, first_cluster_of_primitive);
   make_items(scene, first_cluster_of_primitive);
   make_mask_materials(scene);
   choose_rank_shift(most_ranks);
   make_ranks();
+}
+
+void RasterScene::append_needles(const Scene& scene, std::span<const MeshTriangle> needles,
+                                 const std::vector<std::uint32_t>& first_cluster_of_primitive) {
+  first_needle_cluster_ = static_cast<std::uint32_t>(clusters.size());
+  for (const MeshTriangle& needle : needles) {
+    Cluster cluster;
+    cluster.first_vertex = static_cast<std::uint32_t>(x.size());
+    cluster.first_triangle = static_cast<std::uint32_t>(corners[0].size());
+    cluster.vertex_count = 3;
+    cluster.triangle_count = 1;
+    // Vectors read the padding: it repeats the last corner.
+    for (std::uint32_t i = 0; i < k_padding; ++i) {
+      const std::uint32_t vertex = scene.indices[needle.first_index + std::min(i, 2u)];
+      const glm::vec3& position = scene.positions[vertex];
+      cluster.box.add(position);
+      x.push_back(position.x);
+      y.push_back(position.y);
+      z.push_back(position.z);
+      if (u.empty()) continue;
+      u.push_back(scene.uvs[vertex].x);
+      v.push_back(scene.uvs[vertex].y);
+    }
+    for (std::uint8_t corner = 0; corner < 3; ++corner) {
+      corners[corner].resize(corners[corner].size() + k_padding, corner);
+    }
+    clusters.push_back(cluster);
+    first_cluster_of_needle_.push_back(first_cluster_of_primitive[needle.primitive]);
+  }
+}
+
+void RasterScene::find_items_of(std::span<const Needle> needles, std::vector<NeedleItem>& items_of) const {
+  items_of.clear();
+  for (const Needle& needle : needles) {
+    const auto item = std::lower_bound(
+        items.begin() + first_item[needle.object], items.begin() + first_item[needle.object + 1],
+        first_cluster_of_needle_[needle.triangle],
+        [](const Item& an_item, std::uint32_t cluster) { return an_item.first_cluster < cluster; });
+    items_of.push_back(
+        {static_cast<std::uint32_t>(item - items.begin()), first_needle_cluster_ + needle.triangle});
+  }
 }
 
 void RasterScene::make_items(const Scene& scene,

@@ -8,6 +8,7 @@
 
 #include "common/object_id.hpp"
 #include "common/scene/scene.hpp"
+#include "control_view/engines/raster/needle.hpp"
 
 namespace sightline::raster {
 
@@ -40,6 +41,12 @@ struct Item {
   bool double_sided = false;
   bool masked = false;
   bool blended = false;
+};
+
+/// A needle (see NeedleIndex) of an item: a cluster of that triangle alone.
+struct NeedleItem {
+  std::uint32_t item = 0;
+  std::uint32_t cluster = 0;
 };
 
 /// What a rank stands for: a cluster of an item, or several neighbours where there would be too many ranks.
@@ -78,8 +85,13 @@ struct MaskMaterial {
 /// the mesh frame are left out.
 class RasterScene {
  public:
-  /// Of more clusters than `most_ranks`, instances counted each, several share a rank.
-  RasterScene(const Scene& scene, std::uint32_t threads, std::uint64_t most_ranks);
+  /// Of more clusters than `most_ranks`, instances counted each, several share a rank. `needles` get clusters
+  /// of their own besides those they share with their neighbours.
+  RasterScene(const Scene& scene, std::uint32_t threads, std::uint64_t most_ranks,
+              std::span<const MeshTriangle> needles);
+
+  /// Replaces `items` by what stands for these needles, in their order.
+  void find_items_of(std::span<const Needle> needles, std::vector<NeedleItem>& items_of) const;
 
   /// Sets placements, scene frame. Ranks are made anew only where an object turns its winding.
   void set_transforms(std::span<const ObjectId> ids, std::span<const glm::dmat4> scene_from_object);
@@ -100,10 +112,15 @@ class RasterScene {
   glm::dvec3 world_origin_m{0.0};
 
  private:
+  void append_needles(const Scene& scene, std::span<const MeshTriangle> needles,
+                      const std::vector<std::uint32_t>& first_cluster_of_primitive);
   void make_items(const Scene& scene, const std::vector<std::uint32_t>& first_cluster_of_primitive);
   void make_mask_materials(const Scene& scene);
   void choose_rank_shift(std::uint64_t most_ranks);
   void make_ranks();
+
+  std::uint32_t first_needle_cluster_ = 0;
+  std::vector<std::uint32_t> first_cluster_of_needle_;  ///< of the primitive it belongs to
 };
 
 }  // namespace sightline::raster
