@@ -1,6 +1,7 @@
 #include "main_view/client/moving_objects.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -12,16 +13,6 @@
 namespace sightline {
 namespace {
 
-/// An extrapolation's error is forgotten by half in this time, seconds.
-constexpr double k_error_half_life_s = 1.0;
-/// The next error may be larger than those before.
-constexpr double k_error_margin = 1.25;
-/// Of the way to go, while little is known of how well it is foretold; and of the object's size.
-constexpr double k_least_error_of_way = 0.02;
-constexpr double k_least_error_of_size = 0.002;
-/// No news for so many of its steps: it stands.
-constexpr double k_steps_to_stop = 2.5;
-
 /// As far as the wire goes; beyond, the box does not hold the object, which is then drawn.
 WorldBox within_wire(const WorldBox& box) noexcept {
   constexpr glm::dvec3 k_limit(k_max_matrix_entry);
@@ -31,24 +22,44 @@ WorldBox within_wire(const WorldBox& box) noexcept {
   return ordered ? clamped : WorldBox{-k_limit, k_limit};  // NaN, of numbers that no scene has
 }
 
+/// `way` and as far around it as it may be off, as MotionKernel does it. `bounds`: where the object is now.
+WorldBox with_doubt(const WorldBox& way, double error_m, double speed_m_per_s, const WorldBox& bounds,
+                    const ForetellTimes& times) noexcept {
+  const double least_error_m = k_least_error_of_way * speed_m_per_s * (times.until_s - times.now_s) +
+                               k_least_error_of_size * glm::length(bounds.max - bounds.min);
+  return within_wire(widened(way, k_error_margin * error_m + least_error_m));
+}
+
+WorldBox box_in(const BoxRows& rows, std::uint32_t slot) noexcept {
+  const std::size_t i = MotionBlocks::lane(slot);
+  return {{rows.min[0][i], rows.min[1][i], rows.min[2][i]}, {rows.max[0][i], rows.max[1][i], rows.max[2][i]}};
+}
+
+void put_box(const WorldBox& box, std::uint32_t slot, BoxRows& rows) noexcept {
+  const std::size_t i = MotionBlocks::lane(slot);
+  for (int axis = 0; axis < 3; ++axis) {
+    rows.min[axis][i] = box.min[axis];
+    rows.max[axis][i] = box.max[axis];
+  }
+}
+
 }  // namespace
 
 std::uint32_t MovingObjects::add_slot(ObjectId id) {
   const auto slot = static_cast<std::uint32_t>(standing_.size());
   Standing& object = standing_.emplace_back();
   object.id = id;
-  learnt_.emplace_back();
   News& news = news_.emplace_back();
   const std::uint32_t declared = declared_slots_.find(id);
   if (declared != IdSlots::k_none) {
     const Declared& file = declared_[declared];
-    const ObjectMotion& motion = motions_.emplace_back(file.object_bounds, file.world_from_object);
-    object.bounds = motion.bounds();
+    motions_.add(file.object_bounds, file.world_from_object);
     object.placed = object.as_in_file = true;
-    news.told.add({0, 0.0, ObjectState::resting, file.world_from_object, object.bounds});
+    news.told.add({0, 0.0, ObjectState::resting, file.world_from_object, motions_.bounds(slot)});
   } else {
-    motions_.emplace_back(Aabb{}, glm::dmat4x3(1.0));
+    motions_.add(Aabb{}, glm::dmat4x3(1.0));
   }
+  moving_lanes_.resize(motions_.block_count(), 0);
   slots_.set(id, slot);
   return slot;
 }
@@ -76,11 +87,26 @@ void MovingObjects::list_newcomers() {
   newcomers_.clear();
 }
 
+void MovingObjects::set_state(std::uint32_t slot, ObjectState state) noexcept {
+  Standing& object = standing_[slot];
+  object.state = state;
+  const auto bit = static_cast<std::uint8_t>(1u << MotionBlocks::lane(slot));
+  std::uint8_t& lanes = moving_lanes_[slot / k_block_lanes];
+  lanes = state == ObjectState::moving && !object.boxed ? lanes | bit : lanes & ~bit;
+}
+
 /// From now on requests carry its box.
 void MovingObjects::begin_moving(std::uint32_t slot) noexcept {
-  standing_[slot].state = ObjectState::moving;
+  set_state(slot, ObjectState::moving);
   standing_[slot].steady = false;
-  learnt_[slot].foretold_since = foretold_.next_number();
+  forget_foretold(slot);
+}
+
+/// What was foretold so far is not about it.
+void MovingObjects::forget_foretold(std::uint32_t slot) noexcept {
+  motions_.forget_foretold_before(slot, foretold_.next_number());
+  if (standing_[slot].box_slot != IdSlots::k_none)
+    boxes_[standing_[slot].box_slot].foretold_since = foretold_.next_number();
 }
 
 void MovingObjects::declare(std::span<const MovedObject> objects) {
@@ -93,20 +119,21 @@ void MovingObjects::declare(std::span<const MovedObject> objects) {
     if (slot == IdSlots::k_none) continue;
     // It was hidden or boxed before.
     Standing& object = standing_[slot];
-    motions_[slot] = ObjectMotion(given.object_bounds, given.world_from_object);
+    motions_.set_motion(slot, ObjectMotion(given.object_bounds, given.world_from_object));
     object.placed = object.as_in_file = true;
     object.spare = false;
-    if (!object.boxed) object.bounds = motions_[slot].bounds();
     if (news_[slot].told.empty()) {
-      news_[slot].told.add({0, 0.0, ObjectState::resting, given.world_from_object, motions_[slot].bounds()});
+      news_[slot].told.add({0, 0.0, ObjectState::resting, given.world_from_object, motions_.bounds(slot)});
     }
   }
 }
 
 /// Where it stands as geometry, of an object that is a box now or was not known of.
 void MovingObjects::place(std::uint32_t slot, const MovedObject& given) {
-  motions_[slot].set_object_bounds(given.object_bounds);
-  motions_[slot].place(given.world_from_object);
+  ObjectMotion motion = motions_.motion(slot);
+  motion.set_object_bounds(given.object_bounds);
+  motion.place(given.world_from_object);
+  motions_.set_motion(slot, motion);
   standing_[slot].placed = true;
   standing_[slot].as_in_file = false;
   news_[slot].move.begin();
@@ -115,6 +142,7 @@ void MovingObjects::place(std::uint32_t slot, const MovedObject& given) {
 bool MovingObjects::move(double now_s, double last_frame_s, std::span<const MovedObject> objects) {
   bool all_known = true;
   const ForetoldBoxes::Covering covering = foretold_.covering(now_s);
+  MotionSteps steps(motions_, {now_s, last_frame_s, foretold_.next_number()}, covering);
   for (const MovedObject& given : objects) {
     std::uint32_t slot = slots_.find(given.id);
     if (slot == IdSlots::k_none) {
@@ -126,38 +154,35 @@ bool MovingObjects::move(double now_s, double last_frame_s, std::span<const Move
       slot = add_slot(given.id);
     }
     Standing& object = standing_[slot];
-    ObjectMotion& motion = motions_[slot];
     if (object.boxed) {
-      if (motion.world_from_object() != given.world_from_object) place(slot, given);
-      motion.set_object_bounds(given.object_bounds);
-      step_box(slot, now_s, last_frame_s, motion.bounds(), covering);
+      steps.flush();
+      if (motions_.world_from_object(slot) != given.world_from_object) place(slot, given);
+      if (motions_.object_bounds(slot) != given.object_bounds)
+        motions_.set_object_bounds(slot, given.object_bounds);
+      step_box(slot, now_s, last_frame_s, motions_.bounds(slot), covering);
       continue;
     }
     if (!object.placed) {
+      steps.flush();
       place(slot, given);
-      object.bounds = motion.bounds();
       all_known = all_known && object.state == ObjectState::absent;
       if (object.state != ObjectState::absent) activate(slot);
       continue;
     }
-    motion.set_object_bounds(given.object_bounds);
-    if (motion.world_from_object() == given.world_from_object) continue;
+    if (motions_.object_bounds(slot) != given.object_bounds) {
+      steps.flush();
+      motions_.set_object_bounds(slot, given.object_bounds);
+    }
+    if (motions_.world_from_object(slot) == given.world_from_object) continue;
+    const bool stood = object.state != ObjectState::moving;
+    steps.add(slot, given.object_bounds, given.world_from_object, stood);
+    if (object.steady) continue;
     activate(slot);
-    Learnt& learnt = learnt_[slot];
-    // An object that stood until now stood in the frame before as well.
-    const bool stood =
-        object.state != ObjectState::moving || now_s - learnt.changed_s > k_steps_to_stop * motion.step_s();
-    const double from_s = stood ? std::max(learnt.changed_s, last_frame_s) : learnt.changed_s;
-    const bool went_on = motion.step(std::min(from_s, now_s), now_s, given.world_from_object);
-    if (!went_on) learnt.foretold_since = foretold_.next_number();
-    object.bounds = motion.bounds();
-    learnt.changed_s = now_s;
     object.as_in_file = false;
-    if (!object.steady) news_[slot].move.begin();
-    if (object.state == ObjectState::absent) continue;
-    if (object.state != ObjectState::moving) begin_moving(slot);
-    learn(slot, now_s, covering);
+    news_[slot].move.begin();
+    if (stood && object.state != ObjectState::absent) begin_moving(slot);
   }
+  steps.flush();
   list_newcomers();
   return all_known;
 }
@@ -179,12 +204,12 @@ bool MovingObjects::box(double now_s, double last_frame_s, std::span<const Boxed
     }
     object.boxed = true;
     if (object.box_slot == IdSlots::k_none) {
-      object.box_slot = static_cast<std::uint32_t>(box_motions_.size());
-      box_motions_.emplace_back();
+      object.box_slot = static_cast<std::uint32_t>(boxes_.size());
+      boxes_.emplace_back();
     }
-    box_motions_[object.box_slot] = BoxMotion();
-    object.bounds = given.world_bounds;
-    learnt_[slot].changed_s = now_s;
+    boxes_[object.box_slot] = BoxCourse();
+    boxes_[object.box_slot].bounds = given.world_bounds;
+    boxes_[object.box_slot].changed_s = now_s;
     if (object.state == ObjectState::absent) continue;
     all_known = all_known && !told.empty();
     begin_moving(slot);
@@ -196,17 +221,15 @@ bool MovingObjects::box(double now_s, double last_frame_s, std::span<const Boxed
 
 void MovingObjects::step_box(std::uint32_t slot, double now_s, double last_frame_s, const WorldBox& bounds,
                              const ForetoldBoxes::Covering& covering) {
-  Standing& object = standing_[slot];
-  if (object.bounds == bounds) return;
-  Learnt& learnt = learnt_[slot];
-  BoxMotion& motion = box_motions_[object.box_slot];
-  const bool stood = now_s - learnt.changed_s > k_steps_to_stop * motion.step_s();
-  const double from_s = stood ? std::max(learnt.changed_s, last_frame_s) : learnt.changed_s;
-  const bool went_on = motion.step(std::min(from_s, now_s), now_s, object.bounds, bounds);
-  if (!went_on) learnt.foretold_since = foretold_.next_number();
-  object.bounds = bounds;
-  learnt.changed_s = now_s;
-  if (object.state != ObjectState::absent) learn(slot, now_s, covering);
+  BoxCourse& box = boxes_[standing_[slot].box_slot];
+  if (box.bounds == bounds) return;
+  const bool stood = now_s - box.changed_s > k_steps_to_stop * box.motion.step_s();
+  const double from_s = stood ? std::max(box.changed_s, last_frame_s) : box.changed_s;
+  const bool went_on = box.motion.step(std::min(from_s, now_s), now_s, box.bounds, bounds);
+  if (!went_on) box.foretold_since = foretold_.next_number();
+  box.bounds = bounds;
+  box.changed_s = now_s;
+  if (standing_[slot].state != ObjectState::absent) learn(slot, now_s, covering);
 }
 
 void MovingObjects::unbox(std::span<const ObjectId> ids) {
@@ -217,11 +240,8 @@ void MovingObjects::unbox(std::span<const ObjectId> ids) {
     Standing& object = standing_[slot];
     object.boxed = false;
     if (object.spare) gone.push_back(id);
-    constexpr double k_infinity = std::numeric_limits<double>::infinity();
-    object.bounds =
-        object.placed ? motions_[slot].bounds() : WorldBox{glm::dvec3(-k_infinity), glm::dvec3(k_infinity)};
     if (object.spare || object.state == ObjectState::absent) continue;
-    object.state = ObjectState::resting;
+    set_state(slot, ObjectState::resting);
     object.steady = false;
     activate(slot);
   }
@@ -237,13 +257,13 @@ bool MovingObjects::hide(std::span<const ObjectId> ids) {
     Standing& object = standing_[slot];
     if (object.state == ObjectState::absent) continue;
     all_known = all_known && (object.placed || object.boxed || object.spare);
-    object.state = ObjectState::absent;
+    set_state(slot, ObjectState::absent);
     object.steady = false;
     if (!object.spare) {
       object.never_hidden = false;
       news_[slot].presence.begin();
     }
-    learnt_[slot].foretold_since = foretold_.next_number();
+    forget_foretold(slot);
     stop(slot);
     absent_.push_back(id);
     activate(slot);
@@ -259,7 +279,7 @@ void MovingObjects::show(std::span<const ObjectId> ids) {
   for (const ObjectId id : ids) {
     const std::uint32_t slot = slots_.find(id);
     if (slot == IdSlots::k_none || standing_[slot].state != ObjectState::absent) continue;
-    standing_[slot].state = ObjectState::resting;
+    set_state(slot, ObjectState::resting);
     if (standing_[slot].boxed) begin_moving(slot);
     if (!standing_[slot].spare) news_[slot].presence.begin();
     activate(slot);
@@ -271,71 +291,76 @@ void MovingObjects::show(std::span<const ObjectId> ids) {
   list_newcomers();
 }
 
-/// Holds where the object is now against what was foretold for now.
+/// Holds where a box is now against what was foretold for now.
 void MovingObjects::learn(std::uint32_t slot, double now_s,
                           const ForetoldBoxes::Covering& covering) noexcept {
-  Learnt& learnt = learnt_[slot];
-  const double passed_s = std::max(now_s - learnt.error_s, 0.0);
-  if (passed_s != decay_s_) {
-    decay_s_ = passed_s;
-    decay_ = std::exp2(-passed_s / k_error_half_life_s);
+  BoxCourse& box = boxes_[standing_[slot].box_slot];
+  box.error_m *= std::exp2(-std::max(now_s - box.error_s, 0.0) / k_error_half_life_s);
+  box.error_s = now_s;
+  const ForetoldRows foretold = covering.rows(slot / k_block_lanes);
+  for (std::size_t i = 0; i < foretold.count; ++i) {
+    if (foretold.numbers[i] - box.foretold_since < 0) continue;
+    box.error_m = std::max(box.error_m, excess_m(box_in(*foretold.boxes[i], slot), box.bounds));
   }
-  learnt.error_m *= decay_;
-  learnt.error_s = now_s;
-  for (std::size_t i = 0; i < covering.count; ++i) {
-    const ForetoldBoxes::Column& column = *covering.columns[i];
-    if (column.number < learnt.foretold_since) continue;
-    learnt.error_m = std::max(learnt.error_m, excess_m(column.boxes[slot], standing_[slot].bounds));
-  }
-}
-
-double MovingObjects::step_s(std::uint32_t slot) const noexcept {
-  const Standing& object = standing_[slot];
-  return object.boxed ? box_motions_[object.box_slot].step_s() : motions_[slot].step_s();
 }
 
 void MovingObjects::stop(std::uint32_t slot) noexcept {
-  motions_[slot].stop();
+  motions_.stop(slot);
   const std::uint32_t box_slot = standing_[slot].box_slot;
-  if (box_slot != IdSlots::k_none) box_motions_[box_slot].stop();
+  if (box_slot != IdSlots::k_none) boxes_[box_slot].motion.stop();
 }
 
-/// Stops and rests what has not changed for long enough.
-void MovingObjects::settle(std::uint32_t slot, double now_s, const Usage& usage,
-                           const ForetoldBoxes::Covering& covering) {
-  const double quiet_s = now_s - learnt_[slot].changed_s;
-  if (!(quiet_s > 0.0)) return;
-  if (quiet_s > k_steps_to_stop * step_s(slot)) stop(slot);
-  learn(slot, now_s, covering);
-  Standing& object = standing_[slot];
-  if (object.boxed || quiet_s < std::max(k_rest_intervals * usage.interval_s, k_least_rest_s)) return;
-  object.state = ObjectState::resting;
-  object.steady = false;
+/// Where the objects of a block will be, and which of them have come to rest.
+void MovingObjects::foretell_block(std::size_t block, const Asking& asking) {
+  asked_in_[block] = write_count_;
+  const std::uint32_t moving = moving_lanes_[block];
+  BoxRows not_kept;
+  BoxRows& way = asking.column != nullptr ? asking.column->boxes[block] : not_kept;
+  const Foretold found =
+      motions_.foretell(block, moving, asking.times, asking.covering.rows(block), way, asked_[block]);
+  const auto for_each = [&](std::uint32_t lanes, const auto& work) {
+    for (; lanes != 0; lanes &= lanes - 1)
+      work(static_cast<std::uint32_t>(k_block_lanes * block) +
+           static_cast<std::uint32_t>(std::countr_zero(lanes)));
+  };
+  for_each(found.rested, [&](std::uint32_t slot) {
+    set_state(slot, ObjectState::resting);
+    standing_[slot].steady = false;
+  });
+  for_each(found.turning_fast & moving & ~found.rested,
+           [&](std::uint32_t slot) { foretell_turning(slot, asking, way); });
 }
 
-WorldBox MovingObjects::box_of(std::uint32_t slot, double now_s, const Usage& usage,
-                               ForetoldBoxes::Column* column) const {
-  const Standing& object = standing_[slot];
-  double speed_m_per_s = 0.0;
-  WorldBox way;
-  if (object.boxed) {
-    const BoxMotion& motion = box_motions_[object.box_slot];
-    way = motion.bounds_between(object.bounds, usage.from_s, usage.until_s);
-    speed_m_per_s = motion.speed_m_per_s();
-  } else {
-    const ObjectMotion::Way foretold = motions_[slot].way_between(usage.from_s, usage.until_s);
-    way = foretold.bounds;
-    speed_m_per_s = foretold.speed_m_per_s;
+void MovingObjects::foretell_turning(std::uint32_t slot, const Asking& asking, BoxRows& way) {
+  const ObjectMotion motion = motions_.motion(slot);
+  const ObjectMotion::Way foretold = motion.way_between(asking.times.from_s, asking.times.until_s);
+  put_box(foretold.bounds, slot, way);
+  const WorldBox box = with_doubt(foretold.bounds, motions_.error_m(slot), foretold.speed_m_per_s,
+                                  motions_.bounds(slot), asking.times);
+  put_box(box, slot, asked_[slot / k_block_lanes]);
+}
+
+/// Of an object on the move, which is looked at for the first time in this request.
+WorldBox MovingObjects::box_of_boxed(std::uint32_t slot, const Asking& asking) {
+  BoxCourse& box = boxes_[standing_[slot].box_slot];
+  const double quiet_s = asking.times.now_s - box.changed_s;
+  if (quiet_s > 0.0) {
+    if (quiet_s > k_steps_to_stop * box.motion.step_s()) stop(slot);
+    learn(slot, asking.times.now_s, asking.covering);
   }
-  if (column != nullptr) column->boxes[slot] = way;
-  const double least_error_m = k_least_error_of_way * speed_m_per_s * (usage.until_s - now_s) +
-                               k_least_error_of_size * glm::length(object.bounds.max - object.bounds.min);
-  return within_wire(widened(way, k_error_margin * learnt_[slot].error_m + least_error_m));
+  const WorldBox way = box.motion.bounds_between(box.bounds, asking.times.from_s, asking.times.until_s);
+  if (asking.column != nullptr) put_box(way, slot, asking.column->boxes[slot / k_block_lanes]);
+  return with_doubt(way, box.error_m, box.motion.speed_m_per_s(), box.bounds, asking.times);
 }
 
 /// Notes what request `seq` says of it, and forgets what requests said that are answered no more.
 void MovingObjects::tell(std::uint32_t slot, std::uint64_t seq, double now_s, double keep_s) {
   Standing& object = standing_[slot];
+  ToldHistory& told = news_[slot].told;
+  if (object.state == ObjectState::moving && object.boxed_since != k_never_told) {  // as the request before
+    told.forget_before(now_s - keep_s);
+    return;
+  }
   Told now{seq, now_s, object.state, glm::dmat4x3(1.0), {}};
   if (object.state == ObjectState::resting) {
     if (object.spare) {
@@ -343,11 +368,10 @@ void MovingObjects::tell(std::uint32_t slot, std::uint64_t seq, double now_s, do
     } else if (!object.placed) {
       now.state = ObjectState::unknown;
     } else {
-      now.world_from_object = motions_[slot].world_from_object();
-      now.bounds = object.bounds;
+      now.world_from_object = motions_.world_from_object(slot);
+      now.bounds = bounds_of(slot);
     }
   }
-  ToldHistory& told = news_[slot].told;
   told.add(now);
   told.forget_before(now_s - keep_s);
   object.boxed_since = now.state == ObjectState::moving ? told.newest().first_seq : k_never_told;
@@ -358,7 +382,7 @@ void MovingObjects::deliver(std::uint32_t slot, ViewRequest& request) {
   News& news = news_[slot];
   if (object.state == ObjectState::resting && object.placed && news.move.due) {
     news.move.send(request.request_seq);
-    request.moves.push_back({object.id, motions_[slot].world_from_object()});
+    request.moves.push_back({object.id, motions_.world_from_object(slot)});
   }
   if (news.presence.due) {
     news.presence.send(request.request_seq);
@@ -378,20 +402,28 @@ bool MovingObjects::is_quiet(std::uint32_t slot) const noexcept {
 }
 
 void MovingObjects::write(ViewRequest& request, double now_s, const Usage& usage) {
-  Usage from_now = usage;
-  from_now.from_s = std::max(usage.from_s, now_s);
-  from_now.until_s = std::max(usage.until_s, from_now.from_s);
-  ForetoldBoxes::Column* column = foretold_.begin(now_s, from_now.from_s, from_now.until_s, standing_.size());
-  const ForetoldBoxes::Covering covering = foretold_.covering(now_s, column);
+  Asking asking;
+  ForetellTimes& times = asking.times;
+  times.now_s = now_s;
+  times.from_s = std::max(usage.from_s, now_s);
+  times.until_s = std::max(usage.until_s, times.from_s);
+  times.rest_s = std::max(k_rest_intervals * usage.interval_s, k_least_rest_s);
+  asking.column = foretold_.begin(now_s, times.from_s, times.until_s, motions_.block_count());
+  asking.covering = foretold_.covering(now_s, asking.column);
+  asked_.resize(motions_.block_count());
+  asked_in_.resize(motions_.block_count(), 0);
+  ++write_count_;
   request.boxed.reserve(active_.size());
   std::size_t kept = 0;
   for (const std::uint32_t slot : active_) {
     Standing& object = standing_[slot];
-    if (object.state == ObjectState::moving) settle(slot, now_s, from_now, covering);
-    if (!object.steady) tell(slot, request.request_seq, now_s, usage.keep_s);
+    const std::size_t block = slot / k_block_lanes;
+    if (asked_in_[block] != write_count_) foretell_block(block, asking);
     if (object.state == ObjectState::moving)
-      request.boxed.push_back({object.id, box_of(slot, now_s, from_now, column)});
+      request.boxed.push_back(
+          {object.id, object.boxed ? box_of_boxed(slot, asking) : box_in(asked_[block], slot)});
     if (!object.steady) {
+      tell(slot, request.request_seq, now_s, usage.keep_s);
       deliver(slot, request);
       const News& news = news_[slot];
       object.steady = object.state == ObjectState::moving && news.told.is_settled() && !news.presence.due;

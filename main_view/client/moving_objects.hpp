@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -10,8 +11,8 @@
 #include "main_view/client/cast_shadows.hpp"
 #include "main_view/client/foretold_boxes.hpp"
 #include "main_view/client/id_slots.hpp"
+#include "main_view/client/motion_blocks.hpp"
 #include "main_view/client/moved_in_frame.hpp"
-#include "main_view/client/object_motion.hpp"
 #include "main_view/client/told_history.hpp"
 #include "main_view/client/visible_set_timeline.hpp"
 #include "protocol/messages.hpp"
@@ -94,26 +95,27 @@ class MovingObjects {
   };
   /// What every frame looks at; the rest is in arrays of its own, by the same slot.
   struct Standing {
-    WorldBox bounds{};                         ///< where it is now
     std::uint64_t boxed_since = k_never_told;  ///< requests from here on carry its box
     ObjectId id{};
-    std::uint32_t box_slot = IdSlots::k_none;  ///< of its BoxMotion, once it had one
+    std::uint32_t box_slot = IdSlots::k_none;  ///< of its BoxCourse, once it had one
     ObjectState state = ObjectState::resting;
-    bool steady = false;       ///< on the move, and all requests that may be answered say so
-    bool active = false;       ///< listed in active_
-    bool placed = false;       ///< its placement is known
-    bool as_in_file = false;   ///< it never moved
-    bool never_hidden = true;  ///< the daemon need not be told that it is there
-    bool boxed = false;        ///< for good
-    bool spare = false;        ///< the scene has no geometry for it
-    bool under_way = false;    ///< listed in under_way_
+    bool steady : 1 = false;       ///< on the move, and all requests that may be answered say so
+    bool active : 1 = false;       ///< listed in active_
+    bool placed : 1 = false;       ///< its placement is known
+    bool as_in_file : 1 = false;   ///< it never moved
+    bool never_hidden : 1 = true;  ///< the daemon need not be told that it is there
+    bool boxed : 1 = false;        ///< for good
+    bool spare : 1 = false;        ///< the scene has no geometry for it
+    bool under_way : 1 = false;    ///< listed in under_way_
   };
-  /// How far what was foretold of it was off.
-  struct Learnt {
+  /// Of an object that is boxed for good.
+  struct BoxCourse {
+    WorldBox bounds;  ///< where it is now
+    BoxMotion motion;
     double changed_s = 0.0;
-    double error_m = 0.0;
-    double error_s = 0.0;              ///< as of this time
-    std::uint64_t foretold_since = 0;  ///< columns from this one on are about it
+    double error_m = 0.0;             ///< how far what was foretold of it was off
+    double error_s = 0.0;             ///< as of this time
+    std::int32_t foretold_since = 0;  ///< columns from this one on are about it
   };
   struct News {
     ToldHistory told;
@@ -124,19 +126,35 @@ class MovingObjects {
   std::uint32_t add_slot(ObjectId id);
   void activate(std::uint32_t slot);
   void list_newcomers();
+  void set_state(std::uint32_t slot, ObjectState state) noexcept;
   void begin_moving(std::uint32_t slot) noexcept;
+  void forget_foretold(std::uint32_t slot) noexcept;
   void place(std::uint32_t slot, const MovedObject& given);
+  /// Where it is now.
+  [[nodiscard]] WorldBox bounds_of(std::uint32_t slot) const noexcept {
+    const Standing& object = standing_[slot];
+    if (object.boxed) return boxes_[object.box_slot].bounds;
+    if (object.placed) return motions_.bounds(slot);
+    constexpr double k_infinity = std::numeric_limits<double>::infinity();
+    return {glm::dvec3(-k_infinity), glm::dvec3(k_infinity)};
+  }
   void step_box(std::uint32_t slot, double now_s, double last_frame_s, const WorldBox& bounds,
                 const ForetoldBoxes::Covering& covering);
   void learn(std::uint32_t slot, double now_s, const ForetoldBoxes::Covering& covering) noexcept;
-  void settle(std::uint32_t slot, double now_s, const Usage& usage, const ForetoldBoxes::Covering& covering);
-  [[nodiscard]] WorldBox box_of(std::uint32_t slot, double now_s, const Usage& usage,
-                                ForetoldBoxes::Column* column) const;
+  void stop(std::uint32_t slot) noexcept;
+
+  /// A request in the making.
+  struct Asking {
+    ForetellTimes times;
+    ForetoldBoxes::Covering covering;
+    ForetoldBoxes::Column* column = nullptr;  ///< null where this one's boxes are not kept
+  };
+  void foretell_block(std::size_t block, const Asking& asking);
+  void foretell_turning(std::uint32_t slot, const Asking& asking, BoxRows& way);
+  [[nodiscard]] WorldBox box_of_boxed(std::uint32_t slot, const Asking& asking);
   void tell(std::uint32_t slot, std::uint64_t seq, double now_s, double keep_s);
   void deliver(std::uint32_t slot, ViewRequest& request);
   [[nodiscard]] bool is_quiet(std::uint32_t slot) const noexcept;
-  [[nodiscard]] double step_s(std::uint32_t slot) const noexcept;
-  void stop(std::uint32_t slot) noexcept;
 
   /// What the set knows wrong of the object. Whether the object itself has to be drawn for it.
   [[nodiscard]] bool misjudged(std::uint32_t slot, const FiledSet& filed, const BoxedObject* box,
@@ -145,17 +163,21 @@ class MovingObjects {
   IdSlots declared_slots_, slots_;
   std::vector<Declared> declared_;
   std::vector<Standing> standing_;
-  std::vector<Learnt> learnt_;
-  std::vector<ObjectMotion> motions_;
+  MotionBlocks motions_;
   std::vector<News> news_;
-  std::vector<BoxMotion> box_motions_;    ///< by box_slot
+  std::vector<BoxCourse> boxes_;          ///< by box_slot
   std::vector<std::uint32_t> active_;     ///< slots, by ascending ids: all but those at rest (or absent) that
                                           ///< every request at hand agrees about
   std::vector<std::uint32_t> newcomers_;  ///< to active_
   std::vector<std::uint32_t> under_way_;  ///< slots with deliveries sent and not acknowledged
   std::vector<ObjectId> absent_;          ///< ascending
   ForetoldBoxes foretold_;
-  double decay_s_ = 0.0, decay_ = 1.0;  ///< what an error keeps after so long
+
+  // By blocks of motions_.
+  std::vector<std::uint8_t> moving_lanes_;  ///< a bit each: on the move and not boxed for good
+  std::vector<BoxRows> asked_;              ///< what the newest request says
+  std::vector<std::uint64_t> asked_in_;     ///< which that is
+  std::uint64_t write_count_ = 0;
 };
 
 }  // namespace sightline

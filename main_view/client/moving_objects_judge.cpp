@@ -23,12 +23,25 @@ class BoxCursor {
   const BoxedObject* end_;
 };
 
-bool holds(const BoxedObject* box, const WorldBox& inner) noexcept {
-  if (box == nullptr) return false;
-  const WorldBox& outer = box->world_bounds;
-  return (outer.min.x <= inner.min.x) & (outer.min.y <= inner.min.y) & (outer.min.z <= inner.min.z) &
-         (outer.max.x >= inner.max.x) & (outer.max.y >= inner.max.y) & (outer.max.z >= inner.max.z);
-}
+/// Whether some boxes hold another one; two of its sides at a time.
+class HeldBox {
+ public:
+  explicit HeldBox(const WorldBox& inner) noexcept
+      : a_{inner.min.x, inner.min.y}, b_{inner.min.z, -inner.max.x}, c_{inner.max.y, inner.max.z} {}
+
+  /// False for NaN.
+  [[nodiscard]] bool in(const BoxedObject* box) const noexcept {
+    if (box == nullptr) return false;
+    const auto& [min, max] = box->world_bounds;
+    const Sides held = (Pair{min.x, min.y} <= a_) & (Pair{min.z, -max.x} <= b_) & (Pair{max.y, max.z} >= c_);
+    return (held[0] & held[1]) != 0;
+  }
+
+ private:
+  using Pair = double __attribute__((vector_size(16)));
+  using Sides = std::int64_t __attribute__((vector_size(16)));
+  Pair a_, b_, c_;
+};
 
 }  // namespace
 
@@ -45,10 +58,10 @@ bool MovingObjects::misjudged(std::uint32_t slot, const FiledSet& filed, const B
     case ObjectState::absent:
       return true;
     case ObjectState::moving:
-      return !holds(box, object.bounds);
+      return !HeldBox(bounds_of(slot)).in(box);
     case ObjectState::resting:
       if (object.state != ObjectState::absent && !object.boxed &&
-          told->world_from_object == motions_[slot].world_from_object()) {
+          told->world_from_object == motions_.world_from_object(slot)) {
         return false;
       }
       cast_shadows(*told, filed.request, shadows);
@@ -73,7 +86,8 @@ MovedInFrame MovingObjects::judge(std::span<const FiledSet* const> used) const {
     const Standing& object = standing_[slot];
     bool untested = false;
     if (object.boxed_since <= oldest_seq) {
-      for (BoxCursor& cursor : cursors) untested |= !holds(cursor.find(object.id), object.bounds);
+      const HeldBox bounds(bounds_of(slot));
+      for (BoxCursor& cursor : cursors) untested |= !bounds.in(cursor.find(object.id));
     } else {
       shadows.clear();
       for (std::size_t i = 0; i < used.size(); ++i) {

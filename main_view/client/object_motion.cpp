@@ -160,7 +160,11 @@ class Arc {
 }  // namespace
 
 ObjectMotion::ObjectMotion(const Aabb& object_bounds, const glm::dmat4x3& world_from_object) noexcept
-    : object_bounds_(object_bounds), world_from_object_(world_from_object) {
+    : ObjectMotion(object_bounds, world_from_object, Course()) {}
+
+ObjectMotion::ObjectMotion(const Aabb& object_bounds, const glm::dmat4x3& world_from_object,
+                           const Course& course) noexcept
+    : object_bounds_(object_bounds), world_from_object_(world_from_object), course_(course) {
   measure();
 }
 
@@ -192,25 +196,25 @@ bool ObjectMotion::step(double from_s, double to_s, const glm::dmat4x3& world_fr
   measure();
   const glm::dvec3 way = center_m_ - center_before;
   const double way_m = glm::length(way);
-  const double last_way_m = std::exchange(last_way_m_, way_m);
-  const double last_step_s = std::exchange(step_s_, to_s - from_s);
-  time_s_ = to_s;
-  if (is_jump(way_m, step_s_, last_way_m, last_step_s)) {
+  const double last_way_m = std::exchange(course_.last_way_m, way_m);
+  const double last_step_s = std::exchange(course_.step_s, to_s - from_s);
+  course_.time_s = to_s;
+  if (is_jump(way_m, course_.step_s, last_way_m, last_step_s)) {
     stop();
     return false;
   }
-  const double per_s = 1.0 / step_s_;
-  const glm::dvec3 before = std::exchange(velocity_m_per_s_, way * per_s);
+  const double per_s = 1.0 / course_.step_s;
+  const glm::dvec3 before = std::exchange(course_.velocity_m_per_s, way * per_s);
   const bool both_have_directions = way_m > k_least_way_m && last_way_m > k_least_way_m;
-  velocity_before_m_per_s_ = both_have_directions ? before : glm::dvec3(0.0);
-  between_s_ = 0.5 * (step_s_ + last_step_s);
-  linear_per_s_ = (glm::dmat3(world_from_object) - linear_before) * per_s;
+  course_.velocity_before_m_per_s = both_have_directions ? before : glm::dvec3(0.0);
+  course_.between_s = 0.5 * (course_.step_s + last_step_s);
+  course_.linear_per_s = (glm::dmat3(world_from_object) - linear_before) * per_s;
   return true;
 }
 
 void ObjectMotion::stop() noexcept {
-  velocity_m_per_s_ = velocity_before_m_per_s_ = glm::dvec3(0.0);
-  linear_per_s_ = glm::dmat3(0.0);
+  course_.velocity_m_per_s = course_.velocity_before_m_per_s = glm::dvec3(0.0);
+  course_.linear_per_s = glm::dmat3(0.0);
 }
 
 /// Square of how fast it turns: a column at right angles to the axis says it, and of three at right angles to
@@ -218,7 +222,7 @@ void ObjectMotion::stop() noexcept {
 double ObjectMotion::turn_squared() const noexcept {
   double fastest = 0.0;
   for (int axis = 0; axis < 3; ++axis) {
-    const double change = glm::dot(linear_per_s_[axis], linear_per_s_[axis]);
+    const double change = glm::dot(course_.linear_per_s[axis], course_.linear_per_s[axis]);
     const double length = glm::dot(world_from_object_[axis], world_from_object_[axis]);
     if (change > fastest * length) fastest = change / length;
   }
@@ -231,13 +235,14 @@ WorldBox ObjectMotion::bounds() const noexcept {
 }
 
 ObjectMotion::Way ObjectMotion::way_between(double from_s, double to_s) const noexcept {
-  const double begin_s = std::max(from_s - time_s_, 0.0), end_s = std::max(to_s - time_s_, begin_s);
-  const glm::dvec3 &velocity = velocity_m_per_s_, &before = velocity_before_m_per_s_;
+  const double begin_s = std::max(from_s - course_.time_s, 0.0),
+               end_s = std::max(to_s - course_.time_s, begin_s);
+  const glm::dvec3 &velocity = course_.velocity_m_per_s, &before = course_.velocity_before_m_per_s;
   const double squared = glm::dot(velocity, velocity);
   glm::dvec3 across(0.0);  // acceleration at right angles to the velocity
   double bend_squared = 0.0;
   if (glm::dot(velocity, before) > 0.0) {
-    const glm::dvec3 change = (velocity - before) / between_s_;
+    const glm::dvec3 change = (velocity - before) / course_.between_s;
     across = change - velocity * (glm::dot(change, velocity) / squared);
     bend_squared = glm::dot(across, across) / squared;
   }
@@ -261,20 +266,20 @@ WorldBox ObjectMotion::turning_little(double begin_s, double end_s, const glm::d
     size_at_begin = size_at_end = glm::dvec3(0.0);
     for (int axis = 0; axis < 3; ++axis) {
       const glm::dvec3& edge = world_from_object_[axis];
-      const glm::dvec3& speed = linear_per_s_[axis];
+      const glm::dvec3& speed = course_.linear_per_s[axis];
       size_at_begin += glm::abs(edge + begin_s * speed) * half[axis];
       size_at_end += glm::abs(edge + end_s * speed) * half[axis];
     }
-    rise += 0.5 * radius_m_ * turn_squared * end_s * (end_s + step_s_);
+    rise += 0.5 * radius_m_ * turn_squared * end_s * (end_s + course_.step_s);
   }
   if (speed_m_per_s > 0.0) {
-    const double passed_s = end_s - begin_s, reach_s = end_s + step_s_,
+    const double passed_s = end_s - begin_s, reach_s = end_s + course_.step_s,
                  across_squared = glm::dot(across, across);
     rise += 0.125 * passed_s * passed_s * std::sqrt(across_squared) +
             end_s * reach_s * reach_s / 6.0 * across_squared / speed_m_per_s;
   }
   // The mean velocity is that of the step's middle.
-  const glm::dvec3 velocity = velocity_m_per_s_ + across * (0.5 * step_s_);
+  const glm::dvec3 velocity = course_.velocity_m_per_s + across * (0.5 * course_.step_s);
   const glm::dvec3 at_begin = center_m_ + (velocity + across * (0.5 * begin_s)) * begin_s;
   const glm::dvec3 at_end = center_m_ + (velocity + across * (0.5 * end_s)) * end_s;
   const WorldBox way{glm::min(at_begin - size_at_begin, at_end - size_at_end),
@@ -285,10 +290,12 @@ WorldBox ObjectMotion::turning_little(double begin_s, double end_s, const glm::d
 
 WorldBox ObjectMotion::turning(double begin_s, double end_s) const noexcept {
   const glm::dmat3 linear(world_from_object_);
-  const glm::dvec3 turn_per_s = step_s_ > k_least_step_s
-                                    ? rotation_between(linear - linear_per_s_ * step_s_, linear) / step_s_
-                                    : glm::dvec3(0.0);
-  const glm::dvec3 bend_per_s = bend_between(velocity_before_m_per_s_, velocity_m_per_s_, between_s_);
+  const glm::dvec3 turn_per_s =
+      course_.step_s > k_least_step_s
+          ? rotation_between(linear - course_.linear_per_s * course_.step_s, linear) / course_.step_s
+          : glm::dvec3(0.0);
+  const glm::dvec3 bend_per_s =
+      bend_between(course_.velocity_before_m_per_s, course_.velocity_m_per_s, course_.between_s);
   const double turn = glm::length(turn_per_s), bend = glm::length(bend_per_s);
   const auto pieces_of = [&](double rad_per_s) {
     return std::ceil(rad_per_s * (end_s - begin_s) / k_piece_rad);
@@ -299,7 +306,7 @@ WorldBox ObjectMotion::turning(double begin_s, double end_s) const noexcept {
                                                  double{k_most_pieces_of_a_way}));
   const double piece_s = (end_s - begin_s) / pieces;
   const glm::dvec3 half = half_size_of(object_bounds_);
-  const Arc arc(center_m_, velocity_m_per_s_, bend_per_s, step_s_);
+  const Arc arc(center_m_, course_.velocity_m_per_s, bend_per_s, course_.step_s);
 
   WorldBox way{glm::dvec3(INFINITY), glm::dvec3(-INFINITY)};
   for (int i = 0; i <= pieces; ++i) {

@@ -17,8 +17,21 @@ namespace sightline {
 /// client's clock.
 class ObjectMotion {
  public:
+  /// How it goes on.
+  struct Course {
+    double time_s = 0.0;  ///< when it came to stand there
+    double step_s = 0.0;
+    double last_way_m = 0.0;                  ///< of the last step, even if that was a jump
+    glm::dvec3 velocity_m_per_s{0.0};         ///< of the centre, mean of the last step
+    glm::dvec3 velocity_before_m_per_s{0.0};  ///< of the step before; 0 where one of them has no direction
+    double between_s = 0.0;                   ///< the middles of the two steps
+    glm::dmat3 linear_per_s{0.0};             ///< how fast the linear part changed in the last step
+  };
+
   /// At rest. `object_bounds` is in the object's own frame and holds all it draws.
   ObjectMotion(const Aabb& object_bounds, const glm::dmat4x3& world_from_object) noexcept;
+  ObjectMotion(const Aabb& object_bounds, const glm::dmat4x3& world_from_object,
+               const Course& course) noexcept;
 
   /// It stood where it is until `from_s` and stands at `world_from_object` at `to_s`. Returns false when that
   /// was a jump, which says nothing of any speed: a step of more than half a metre, and far more than its
@@ -43,9 +56,14 @@ class ObjectMotion {
     double speed_m_per_s = 0.0;  ///< of its fastest point, errs upwards
   };
   [[nodiscard]] Way way_between(double from_s, double to_s) const noexcept;
-  [[nodiscard]] double speed_m_per_s() const noexcept { return way_between(time_s_, time_s_).speed_m_per_s; }
-  /// From one placement to the next, the last time.
-  [[nodiscard]] double step_s() const noexcept { return step_s_; }
+  [[nodiscard]] double speed_m_per_s() const noexcept {
+    return way_between(course_.time_s, course_.time_s).speed_m_per_s;
+  }
+  [[nodiscard]] const Course& course() const noexcept { return course_; }
+  [[nodiscard]] const Aabb& object_bounds() const noexcept { return object_bounds_; }
+  [[nodiscard]] const glm::dvec3& center_m() const noexcept { return center_m_; }
+  /// From its centre to the farthest corner of the box around it.
+  [[nodiscard]] double radius_m() const noexcept { return radius_m_; }
 
  private:
   void measure() noexcept;
@@ -59,13 +77,7 @@ class ObjectMotion {
   glm::dvec3 center_m_{0.0};     ///< of the bounds, world frame
   glm::dvec3 half_size_m_{0.0};  ///< of the box around it
   double radius_m_ = 0.0;
-  double time_s_ = 0.0;  ///< when it came to stand there
-  double step_s_ = 0.0;
-  double last_way_m_ = 0.0;                  ///< of the last step, even if that was a jump
-  glm::dvec3 velocity_m_per_s_{0.0};         ///< of the centre, mean of the last step
-  glm::dvec3 velocity_before_m_per_s_{0.0};  ///< of the step before; 0 where one of them has no direction
-  double between_s_ = 0.0;                   ///< the middles of the two steps
-  glm::dmat3 linear_per_s_{0.0};             ///< how fast the linear part changed in the last step
+  Course course_;
 };
 
 /// The shortest step that says anything of a speed, seconds.

@@ -168,8 +168,7 @@ ObjectTable::State& ObjectTable::touch(ObjectId id) {
 
 void ObjectTable::place(ObjectId id) {
   const std::uint32_t i = index_of(id);
-  bounds_.place(
-      id, states_[i].in_use ? transformed(object_bounds_[i], glm::dmat4(world_from_object_[i])) : Aabb{});
+  bounds_.place(id, states_[i].in_use ? placed(object_bounds_[i], world_from_object_[i]) : Aabb{});
 }
 
 void ObjectTable::mind_lists(ObjectId id) {

@@ -21,7 +21,10 @@ void VisibleSetTimeline::file(ViewRequest request, VisibleSet set) {
   const bool same_time = at != sets_.end() && at->request.for_time_s == request.for_time_s;
   if (same_time && request.request_seq <= at->request.request_seq) return;
   SeenSet seen(set);
-  FiledSet filed{std::move(request), std::move(set), std::move(seen)};
+  std::vector<TestedEye> tested;
+  tested.reserve(request.eyes.size());
+  for (const Eye& eye : request.eyes) tested.emplace_back(eye, request.rotation_error_rad);
+  FiledSet filed{std::move(request), std::move(set), std::move(seen), std::move(tested)};
   if (same_time) {
     *at = std::move(filed);
     return;
@@ -31,7 +34,17 @@ void VisibleSetTimeline::file(ViewRequest request, VisibleSet set) {
 }
 
 void VisibleSetTimeline::drop_before(double time_s) {
-  sets_.erase(sets_.begin(), std::lower_bound(sets_.begin(), sets_.end(), time_s, k_is_before));
+  const auto kept = std::lower_bound(sets_.begin(), sets_.end(), time_s, k_is_before);
+  for (auto set = sets_.begin(); set != kept; ++set) keep_boxes(*set);
+  sets_.erase(sets_.begin(), kept);
+}
+
+/// Ten thousand boxes are half a megabyte: given back in every frame, it would come as untouched pages again.
+void VisibleSetTimeline::keep_boxes(FiledSet& forgotten) noexcept {
+  std::vector<BoxedObject>& boxes = forgotten.request.boxed;
+  if (boxes.capacity() <= spare_boxes_.capacity()) return;
+  boxes.clear();
+  spare_boxes_.swap(boxes);
 }
 
 const FiledSet* VisibleSetTimeline::last_at_or_before(double now_s) const noexcept {

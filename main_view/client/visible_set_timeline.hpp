@@ -4,8 +4,10 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
+#include "main_view/client/field_coverage.hpp"
 #include "main_view/client/seen_set.hpp"
 #include "protocol/messages.hpp"
 #include "protocol/visible_set.hpp"
@@ -17,7 +19,9 @@ namespace sightline {
 struct FiledSet {
   ViewRequest request;
   VisibleSet set;
-  SeenSet seen{};  ///< the set, made ready by the timeline
+  // Made ready by the timeline:
+  SeenSet seen{};                   ///< the set
+  std::vector<TestedEye> tested{};  ///< the request's eyes
 };
 
 /// The visible sets at hand, each under the time it is FOR (not when it arrived), oldest first. Client's
@@ -33,6 +37,10 @@ class VisibleSetTimeline {
   /// Forgets the sets for times before `time_s`.
   void drop_before(double time_s);
   void clear() noexcept { sets_.clear(); }
+  /// Memory for as many boxes as a request that was forgotten had; empty.
+  [[nodiscard]] std::vector<BoxedObject> take_spare_boxes() noexcept {
+    return std::exchange(spare_boxes_, {});
+  }
 
   /// S_last and S_next: the nearest set for a time at or before `now_s`, and after it. Null where there is
   /// none. Valid until the timeline changes.
@@ -46,7 +54,10 @@ class VisibleSetTimeline {
 
  private:
   std::size_t capacity_;
+  void keep_boxes(FiledSet& forgotten) noexcept;
+
   std::vector<FiledSet> sets_;
+  std::vector<BoxedObject> spare_boxes_;
 };
 
 }  // namespace sightline
