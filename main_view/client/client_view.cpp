@@ -90,10 +90,7 @@ Eye eye_of(const ViewPose& pose, ClipDepth clip_depth) {
   make_depth_of_gl(eye.clip_from_camera, clip_depth);
   make_rigid(eye, pose.view);
   make_upright(eye.clip_from_camera);
-  ViewRequest probe;
-  probe.request_seq = 1;
-  probe.eyes.push_back(eye);
-  if (const auto fault = first_fault(Message(probe))) refuse(pose.view, fault->c_str());
+  if (const auto fault = first_fault(eye)) refuse(pose.view, fault->c_str());
   return eye;
 }
 

@@ -171,7 +171,7 @@ void CullingClient::Impl::decide(double time_s) {
     const ViewFrame& list = views[i]->frame();
     fell_back = fell_back || list.fallback() != Fallback::none;
     statistics.listed_objects += list.visible().size();
-    statistics.visible_objects += list.decision().visible.size();
+    statistics.visible_objects += list.decision().visible_count;
     if (in_frame < 2) continue;
     const auto bits = list.bits();
     frame.anywhere_.resize(bits.size(), 0);

@@ -58,6 +58,7 @@ void require_boxes(std::span<const BoxedPlacement> objects) {
 
 /// What any of the sets saw in directions that the view reaches.
 void unite_seen(std::span<const FiledSet* const> used, std::span<const Eye> eyes, FrameDecision& decision) {
+  const std::vector<SeenSet::View> views(eyes.begin(), eyes.end());
   std::size_t words = 0;
   for (const FiledSet* filed : used) {
     const std::span<const ObjectId> ids = filed->seen.ids();
@@ -65,23 +66,26 @@ void unite_seen(std::span<const FiledSet* const> used, std::span<const Eye> eyes
   }
   std::vector<std::uint64_t>& bits = decision.visible_bits;
   bits.assign(words, 0);
-  std::size_t count = 0;
   const auto bit_of = [](ObjectId id) { return std::uint64_t{1} << (index_of(id) % 64); };
   const auto kept = [&](ObjectId id) { return (bits[index_of(id) / 64] & bit_of(id)) != 0; };
   const auto keep = [&](ObjectId id) {
-    bits[index_of(id) / 64] |= bit_of(id);
-    ++count;
+    std::uint64_t& word = bits[index_of(id) / 64];
+    decision.visible_count += (word & bit_of(id)) == 0;
+    word |= bit_of(id);
   };
-  for (const FiledSet* filed : used) filed->seen.visit_in_view(filed->request.eyes, eyes, kept, keep);
+  for (const FiledSet* filed : used) filed->seen.visit_in_view(filed->request.eyes, views, kept, keep);
+}
 
+/// The bits as a set.
+VisibleSet set_of(std::span<const std::uint64_t> bits, std::size_t count) {
   std::vector<ObjectId> ids;
   ids.reserve(count);
-  for (std::size_t word = 0; word < words; ++word) {
+  for (std::size_t word = 0; word < bits.size(); ++word) {
     for (std::uint64_t left = bits[word]; left != 0; left &= left - 1)
       ids.push_back(ObjectId{static_cast<std::uint32_t>(64 * word) +
                              static_cast<std::uint32_t>(std::countr_zero(left))});
   }
-  decision.visible = VisibleSet(ids);
+  return VisibleSet(ids);
 }
 
 CullingOptions validated(CullingOptions options) {
@@ -208,6 +212,7 @@ ViewRequest CullingCore::begin_request(double for_time_s, ImageSize main_size) {
   request.for_time_s = for_time_s;
   request.main_size = main_size;
   request.reset_filter = reset_pending_;
+  request.boxed = timeline_.take_spare_boxes();
   return request;
 }
 
@@ -277,6 +282,12 @@ bool CullingCore::usable(const FiledSet& filed, double now_s, std::span<const Ey
 }
 
 FrameDecision CullingCore::decide(double now_s, std::span<const Eye> eyes) const {
+  FrameDecision decision = decide_in_bits(now_s, eyes);
+  decision.visible = set_of(decision.visible_bits, decision.visible_count);
+  return decision;
+}
+
+FrameDecision CullingCore::decide_in_bits(double now_s, std::span<const Eye> eyes) const {
   FrameDecision decision;
   decision.eye_count = eyes.size();
   const FiledSet* last = timeline_.last_at_or_before(now_s);
@@ -300,17 +311,21 @@ FrameDecision CullingCore::decide(double now_s, std::span<const Eye> eyes) const
 
   decision.fallback = Fallback::none;
   unite_seen(used, eyes, decision);
-  std::vector<bool> covered(eyes.size(), false);
-  for (const FiledSet* filed : used) {
-    for (std::size_t i = 0; i < eyes.size(); ++i) {
-      const Eye& requested = filed->request.eyes[i];
-      decision.tested.push_back(tested_field(requested, filed->request.rotation_error_rad));
-      decision.fields.push_back({i, cut_offs(requested, filed->request.rotation_error_rad, eyes[i])});
-      if (decision.fields.back().cuts.empty()) covered[i] = true;
+  decision.field_covered = true;
+  decision.tested.reserve(used.size() * eyes.size());
+  decision.fields.reserve(used.size() * eyes.size());
+  for (std::size_t i = 0; i < eyes.size(); ++i) {
+    const ViewCorners corners = view_corners(eyes[i]);
+    bool covered = false;
+    for (const FiledSet* filed : used) {
+      const TestedEye& tested = filed->tested[i];
+      decision.tested.push_back(tested.world_field);
+      decision.fields.push_back({i, cut_offs(tested, eyes[i], corners)});
+      covered = covered || decision.fields.back().cuts.empty();
     }
+    decision.field_covered = decision.field_covered && covered;
   }
-  decision.field_covered =
-      !options_.draw_untested || std::find(covered.begin(), covered.end(), false) == covered.end();
+  decision.field_covered = decision.field_covered || !options_.draw_untested;
   return decision;
 }
 

@@ -71,6 +71,7 @@ class FrameDecision {
   Fallback fallback = Fallback::no_set;
   VisibleSet visible;                       ///< S_last OR S_next, with every later set at hand: see all_after
   std::vector<std::uint64_t> visible_bits;  ///< the same, a bit an object as far as its last; or empty
+  std::size_t visible_count = 0;            ///< bits that are set
   bool field_covered = false;       ///< the whole view frustum was tested; world_bounds is then not looked at
   std::vector<Frustum> tested;      ///< the widened fields of S_last and S_next, world frame; for display
   std::vector<TestedField> fields;  ///< without field_covered: what may_be_visible decides by
@@ -167,6 +168,8 @@ class CullingCore {
   /// eyes and was asked from nearly here (see CullingOptions). S_last and S_next are united; one alone will
   /// do.
   [[nodiscard]] FrameDecision decide(double now_s, std::span<const Eye> eyes) const;
+  /// The same, but for `visible`: it is in `visible_bits` alone.
+  [[nodiscard]] FrameDecision decide_in_bits(double now_s, std::span<const Eye> eyes) const;
 
   [[nodiscard]] double horizon_s() const noexcept;
   [[nodiscard]] const std::vector<RigEye>& rig() const noexcept { return rig_; }

@@ -10,28 +10,6 @@ namespace {
 
 constexpr glm::dvec4 k_no_side{0.0, 0.0, 0.0, 1.0};
 
-using Corners = std::array<glm::dvec4, 8>;
-
-/// Homogeneous corners of a projection's frustum, camera frame; w is 1, or 0 for a direction. NaN where it
-/// has none.
-Corners corners_of(const glm::dmat4& clip_from_camera) noexcept {
-  const glm::dmat4 camera_from_clip = glm::inverse(clip_from_camera);
-  Corners corners{};
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    const glm::dvec4 clip((i & 1) != 0 ? 1.0 : -1.0, (i & 2) != 0 ? 1.0 : -1.0, (i & 4) != 0 ? 1.0 : -1.0,
-                          1.0);
-    const glm::dvec4 corner = camera_from_clip * clip;
-    const double reach = glm::length(glm::dvec3(corner));
-    if (std::abs(corner.w) > 1e-9 * reach) {
-      // A corner beyond infinity (w < 0) has no place in a convex hull.
-      corners[i] = corner.w > 0.0 ? corner / corner.w : glm::dvec4(std::nan(""));
-    } else {
-      corners[i] = glm::dvec4(glm::dvec3(corner) / reach, 0.0);
-    }
-  }
-  return corners;
-}
-
 /// The inverse of a rigid matrix, without the rounding of a general one.
 glm::dmat4 rigid_inverse(const glm::dmat4& rigid) noexcept {
   const glm::dmat3 rotation = glm::transpose(glm::dmat3(rigid));
@@ -42,7 +20,7 @@ glm::dmat4 rigid_inverse(const glm::dmat4& rigid) noexcept {
 
 /// World box around the part of the hull of `corners` on the outer side of `plane`: the corners that lie
 /// there, and the points where the hull's edges cross the plane.
-Aabb region_outside(const glm::dvec4& plane, const Corners& corners,
+Aabb region_outside(const glm::dvec4& plane, const ViewCorners& corners,
                     const glm::dmat4& world_from_corners) noexcept {
   constexpr float k_infinity = std::numeric_limits<float>::infinity();
   constexpr Aabb k_everywhere{glm::vec3(-k_infinity), glm::vec3(k_infinity)};
@@ -75,29 +53,55 @@ Frustum tested_field(const Eye& requested, double rotation_error_rad) noexcept {
   return frustum_of(widened(requested.clip_from_camera, rotation_error_rad) * requested.camera_from_world);
 }
 
+ViewCorners view_corners(const Eye& eye) noexcept {
+  const glm::dmat4 camera_from_clip = glm::inverse(eye.clip_from_camera);
+  ViewCorners corners{};
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const glm::dvec4 clip((i & 1) != 0 ? 1.0 : -1.0, (i & 2) != 0 ? 1.0 : -1.0, (i & 4) != 0 ? 1.0 : -1.0,
+                          1.0);
+    const glm::dvec4 corner = camera_from_clip * clip;
+    const double reach = glm::length(glm::dvec3(corner));
+    if (std::abs(corner.w) > 1e-9 * reach) {
+      // A corner beyond infinity (w < 0) has no place in a convex hull.
+      corners[i] = corner.w > 0.0 ? corner / corner.w : glm::dvec4(std::nan(""));
+    } else {
+      corners[i] = glm::dvec4(glm::dvec3(corner) / reach, 0.0);
+    }
+  }
+  return corners;
+}
+
+TestedEye::TestedEye(const Eye& requested_eye, double rotation_error_rad) noexcept
+    : requested(requested_eye),
+      field(frustum_of(widened(requested.clip_from_camera, rotation_error_rad))),
+      world_field(tested_field(requested, rotation_error_rad)),
+      world_from_requested(rigid_inverse(requested.camera_from_world)) {}
+
 std::vector<CutOff> cut_offs(const Eye& requested, double rotation_error_rad, const Eye& eye) {
-  if (eye == requested) return {};
-  // Compared in the requesting camera's frame: far from the origin the world frame has no digits left for
-  // this.
-  const Frustum field = frustum_of(widened(requested.clip_from_camera, rotation_error_rad));
-  const Frustum world_field = tested_field(requested, rotation_error_rad);
-  const glm::dmat4 world_from_requested = rigid_inverse(requested.camera_from_world);
-  const glm::dmat4 requested_from_eye = requested.camera_from_world * rigid_inverse(eye.camera_from_world);
-  Corners corners = corners_of(eye.clip_from_camera);
-  for (glm::dvec4& corner : corners) corner = requested_from_eye * corner;
+  return cut_offs(TestedEye(requested, rotation_error_rad), eye, view_corners(eye));
+}
+
+std::vector<CutOff> cut_offs(const TestedEye& tested, const Eye& eye, ViewCorners corners) {
+  if (eye == tested.requested) return {};
+  const glm::dmat4 requested_from_eye =
+      tested.requested.camera_from_world * rigid_inverse(eye.camera_from_world);
+  std::array<double, 8> tolerance;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    corners[i] = requested_from_eye * corners[i];
+    tolerance[i] = 1e-9 * (1.0 + glm::length(glm::dvec3(corners[i])));
+  }
 
   std::vector<CutOff> cuts;
-  for (std::size_t side = 0; side < field.planes.size(); ++side) {
-    const glm::dvec4& plane = field.planes[side];
-    const bool is_cut = std::any_of(corners.begin(), corners.end(), [&](const glm::dvec4& corner) {
-      const double tolerance = 1e-9 * (1.0 + glm::length(glm::dvec3(corner)));
-      return !(glm::dot(plane, corner) >= -tolerance);  // NaN cuts
-    });
+  for (std::size_t side = 0; side < tested.field.planes.size(); ++side) {
+    const glm::dvec4& plane = tested.field.planes[side];
+    bool is_cut = false;
+    for (std::size_t i = 0; i < corners.size(); ++i)
+      is_cut |= !(glm::dot(plane, corners[i]) >= -tolerance[i]);  // NaN cuts
     if (!is_cut) continue;
     CutOff cut;
     cut.inner_side.planes.fill(k_no_side);
-    cut.inner_side.planes[side] = world_field.planes[side];
-    cut.region = region_outside(plane, corners, world_from_requested);
+    cut.inner_side.planes[side] = tested.world_field.planes[side];
+    cut.region = region_outside(plane, corners, tested.world_from_requested);
     cuts.push_back(cut);
   }
   return cuts;

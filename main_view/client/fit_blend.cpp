@@ -49,7 +49,7 @@ void FitBlend::learn(const BankMotions& motions, const LocalMotion& truth, doubl
     Normal& normal = normal_[axis];
     const double surprise = truth[axis] - motions[0][axis];
     for (std::size_t i = 0; i < k_fit_count; ++i) {
-      for (std::size_t j = 0; j < k_fit_count; ++j) {
+      for (std::size_t j = i; j < k_fit_count; ++j) {
         double& a = normal.a[i * k_fit_count + j];
         a = keep * a + motions[i][axis] * motions[j][axis];
       }

@@ -36,7 +36,8 @@ class FitBlend {
   [[nodiscard]] double evidence() const noexcept { return evidence_; }
 
  private:
-  /// Sums over outcomes, of one axis: A = sum of m m^T, b = sum of m (truth - m[0]).
+  /// Sums over outcomes, of one axis: A = sum of m m^T, the lower half (column after column), and
+  /// b = sum of m (truth - m[0]).
   struct Normal {
     std::array<double, k_fit_count * k_fit_count> a{};
     std::array<double, k_fit_count> b{};

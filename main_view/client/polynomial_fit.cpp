@@ -10,29 +10,31 @@
 namespace sightline {
 namespace {
 
-template <int ParameterCount>
-using Powers = Eigen::Matrix<double, Eigen::Dynamic, ParameterCount>;
+/// As many rows as samples; Eigen::Dynamic for any number of them, at several times the cost.
+template <int ParameterCount, int SampleCount = Eigen::Dynamic>
+using Powers = Eigen::Matrix<double, SampleCount, ParameterCount>;
 
 /// Residuals of one component: polynomial minus sample. Linear, so the Jacobian is the matrix of powers
 /// itself.
-template <int ParameterCount>
+template <int ParameterCount, int SampleCount = Eigen::Dynamic>
 struct ComponentResiduals {
   using Scalar = double;
   // Names that TinySolver asks for.
   // NOLINTNEXTLINE(readability-identifier-naming)
-  enum { NUM_RESIDUALS = Eigen::Dynamic, NUM_PARAMETERS = ParameterCount };
+  enum { NUM_RESIDUALS = SampleCount, NUM_PARAMETERS = ParameterCount };
 
-  const Powers<ParameterCount>& powers;
-  const Eigen::VectorXd& samples;
+  const Powers<ParameterCount, SampleCount>& powers;
+  const Eigen::Matrix<double, SampleCount, 1>& samples;
 
   // NOLINTNEXTLINE(readability-identifier-naming)
   [[nodiscard]] int NumResiduals() const { return static_cast<int>(powers.rows()); }
 
   bool operator()(const double* parameters, double* residuals, double* jacobian) const {
     const Eigen::Map<const Eigen::Matrix<double, ParameterCount, 1>> coefficients(parameters);
-    Eigen::Map<Eigen::VectorXd>(residuals, powers.rows()).noalias() = powers * coefficients - samples;
+    Eigen::Map<Eigen::Matrix<double, SampleCount, 1>>(residuals, powers.rows()).noalias() =
+        powers * coefficients - samples;
     if (jacobian != nullptr)
-      Eigen::Map<Powers<ParameterCount>>(jacobian, powers.rows(), ParameterCount) = powers;
+      Eigen::Map<Powers<ParameterCount, SampleCount>>(jacobian, powers.rows(), ParameterCount) = powers;
     return true;
   }
 };
@@ -47,9 +49,9 @@ Eigen::Matrix<double, ParameterCount, 1> powers_of(double x) {
 
 /// Options for a linear problem: it is solved by one undamped step; a second polishes what the first rounded
 /// away. TinySolver's cost tolerances are absolute, and a cost of 1e-12 square metres still matters here.
-template <int ParameterCount>
-ceres::TinySolver<ComponentResiduals<ParameterCount>> linear_solver(int steps) {
-  ceres::TinySolver<ComponentResiduals<ParameterCount>> solver;
+template <int ParameterCount, int SampleCount = Eigen::Dynamic>
+ceres::TinySolver<ComponentResiduals<ParameterCount, SampleCount>> linear_solver(int steps) {
+  ceres::TinySolver<ComponentResiduals<ParameterCount, SampleCount>> solver;
   solver.options.initial_trust_region_radius = 1e16;
   solver.options.max_num_iterations = 1 + steps;
   solver.options.function_tolerance = 0.0;
@@ -98,27 +100,47 @@ Extrapolation fit(std::span<const double> times_s, std::span<const PoseComponent
   return result;
 }
 
-template <int ParameterCount>
+template <int ParameterCount, int SampleCount>
 std::array<LocalMotion, 3> fit_motion_of(std::span<const double> lead_s,
                                          std::span<const LocalMotion> motion) {
   const auto count = static_cast<Eigen::Index>(lead_s.size());
   const double span_s = count > 1 ? -lead_s.front() : 1.0;
-  Powers<ParameterCount> powers(count, ParameterCount);
+  Powers<ParameterCount, SampleCount> powers(count, ParameterCount);
   for (Eigen::Index i = 0; i < count; ++i)
     powers.row(i) = powers_of<ParameterCount>(lead_s[static_cast<std::size_t>(i)] / span_s);
 
-  auto solver = linear_solver<ParameterCount>(1);
+  auto solver = linear_solver<ParameterCount, SampleCount>(1);
   std::array<LocalMotion, 3> result{};
-  Eigen::VectorXd samples(count);
+  Eigen::Matrix<double, SampleCount, 1> samples(count);
   for (std::size_t axis = 0; axis < k_motion_axis_count; ++axis) {
     for (Eigen::Index i = 0; i < count; ++i) samples[i] = motion[static_cast<std::size_t>(i)][axis];
     Eigen::Matrix<double, ParameterCount, 1> coefficients = Eigen::Matrix<double, ParameterCount, 1>::Zero();
-    solver.Solve(ComponentResiduals<ParameterCount>{powers, samples}, &coefficients);
+    solver.Solve(ComponentResiduals<ParameterCount, SampleCount>{powers, samples}, &coefficients);
     double unit = 1.0;
     for (int i = 0; i < ParameterCount; ++i, unit /= span_s)
       result[static_cast<std::size_t>(i)][axis] = coefficients[i] * unit;
   }
   return result;
+}
+
+/// The shapes of k_fit_bank are compiled for their very size; others come near a motion's beginning alone.
+template <int ParameterCount>
+std::array<LocalMotion, 3> fit_motion_by_count(std::span<const double> lead_s,
+                                               std::span<const LocalMotion> motion) {
+  switch (lead_s.size()) {
+    case 2:
+      if constexpr (ParameterCount <= 2) return fit_motion_of<ParameterCount, 2>(lead_s, motion);
+      break;
+    case 4:
+      return fit_motion_of<ParameterCount, 4>(lead_s, motion);
+    case 8:
+      return fit_motion_of<ParameterCount, 8>(lead_s, motion);
+    case 20:
+      return fit_motion_of<ParameterCount, 20>(lead_s, motion);
+    default:
+      break;
+  }
+  return fit_motion_of<ParameterCount, Eigen::Dynamic>(lead_s, motion);
 }
 
 }  // namespace
@@ -127,11 +149,11 @@ std::array<LocalMotion, 3> fit_motion(std::span<const double> lead_s, std::span<
                                       int order) {
   switch (order) {
     case 0:
-      return fit_motion_of<1>(lead_s, motion);
+      return fit_motion_by_count<1>(lead_s, motion);
     case 1:
-      return fit_motion_of<2>(lead_s, motion);
+      return fit_motion_by_count<2>(lead_s, motion);
     default:
-      return fit_motion_of<3>(lead_s, motion);
+      return fit_motion_by_count<3>(lead_s, motion);
   }
 }
 

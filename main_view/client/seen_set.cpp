@@ -64,46 +64,51 @@ SeenSet::SeenSet(const VisibleSet& set) : ids_(set.to_ids()) {
     const auto half_cell = static_cast<float>(std::numbers::pi / 512.0);
     const float reach = half_cell * static_cast<float>(2 * width + height) + k_rounding;
     const float near_m = k_distances.code_m[extent.distance];
-    middles_.push_back({direction, reach, near_m > 0.0f ? 1.0f / near_m : k_at_the_eye});
+    middles_.x.push_back(direction.x);
+    middles_.y.push_back(direction.y);
+    middles_.z.push_back(direction.z);
+    middles_.reach.push_back(reach);
+    middles_.per_m.push_back(near_m > 0.0f ? 1.0f / near_m : k_at_the_eye);
   }
 }
 
-std::vector<SeenSet::View> SeenSet::views_of(std::span<const Eye> asked, std::span<const Eye> eyes) {
-  std::vector<View> views;
-  views.reserve(eyes.size());
-  for (const Eye& eye : eyes) {
-    double offset_m = 0.0;
-    for (const Eye& requested : asked)
-      offset_m = std::max(offset_m, glm::length(position_of(eye) - position_of(requested)));
-    const Frustum frustum = frustum_of(eye.clip_from_world());
-    views.push_back({DirectionField(frustum), frustum, offset_m});
-  }
-  return views;
+SeenSet::View::View(const Eye& eye) noexcept : View(eye, frustum_of(eye.clip_from_world())) {}
+
+SeenSet::View::View(const Eye& eye, const Frustum& frustum) noexcept
+    : field(frustum), position_m(position_of(eye)) {
+  for (std::size_t side = 0; side < inward.size(); ++side) inward[side] = glm::vec3(frustum.planes[side]);
 }
 
-void SeenSet::bound_depths(std::span<const View> views, std::span<Bounds> depths) const noexcept {
-  for (const View& view : views) {
-    std::array<glm::vec3, 4> inward;
-    for (std::size_t side = 0; side < inward.size(); ++side)
-      inward[side] = glm::vec3(view.frustum.planes[side]);
-    const auto offset_m = static_cast<float>(view.offset_m);
-    for (std::size_t i = 0; i < depths.size(); ++i) {
-      const Middle& middle = middles_[i];
-      float least = 1.0f;
-      for (const glm::vec3& normal : inward) {
-        const float depth = glm::dot(normal, middle.direction);
-        least = depth < least ? depth : least;
-      }
-      const float highest = least + middle.reach + offset_m * middle.per_m;
-      depths[i].middle = std::max(least, depths[i].middle);
-      if (!(highest < depths[i].highest)) depths[i].highest = highest;  // NaN reaches
+double SeenSet::offset_m(const View& view, std::span<const Eye> asked) noexcept {
+  double farthest_m = 0.0;
+  for (const Eye& requested : asked)
+    farthest_m = std::max(farthest_m, glm::length(view.position_m - position_of(requested)));
+  return farthest_m;
+}
+
+void SeenSet::bound_depths(const View& view, double offset_m, std::span<Depths> depths) const noexcept {
+  const std::array<glm::vec3, 4> inward = view.inward;
+  const auto offset = static_cast<float>(offset_m);
+  const float *x = middles_.x.data(), *y = middles_.y.data(), *z = middles_.z.data();
+  const float *reach = middles_.reach.data(), *per_m = middles_.per_m.data();
+  for (std::size_t i = 0; i < ids_.size(); ++i) {
+    float least = 1.0f;
+    for (const glm::vec3& normal : inward) {
+      const float depth = normal.x * x[i] + normal.y * y[i] + normal.z * z[i];
+      least = depth < least ? depth : least;
     }
+    const float reached = least + reach[i] + offset * per_m[i];
+    depths[i].middle = least > depths[i].middle ? least : depths[i].middle;
+    depths[i].highest = reached < depths[i].highest ? depths[i].highest : reached;  // NaN reaches
   }
 }
 
-bool SeenSet::may_reach(std::span<const View> views, std::size_t index) const noexcept {
-  return std::any_of(views.begin(), views.end(),
-                     [&](const View& view) { return view.field.may_hold(extents_[index], view.offset_m); });
+bool SeenSet::may_reach(std::span<const View> views, std::span<const double> offsets_m,
+                        std::size_t index) const noexcept {
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    if (views[i].field.may_hold(extents_[index], offsets_m[i])) return true;
+  }
+  return false;
 }
 
 }  // namespace sightline

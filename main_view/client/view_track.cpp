@@ -83,7 +83,7 @@ ViewRequest ViewTrack::make_request(double time_s, bool exact) {
 }
 
 void ViewTrack::decide(double time_s, const ObjectTable& objects) {
-  culler_.cull(objects, eyes_, core_.decide(time_s, eyes_), frame_);
+  culler_.cull(objects, eyes_, core_.decide_in_bits(time_s, eyes_), frame_);
 }
 
 void ViewTrack::apply(double time_s, const ObjectEdits& edits) {
