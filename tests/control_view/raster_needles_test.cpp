@@ -261,5 +261,72 @@ TEST(NeedleIndexTest, FindsWhateverGoesAstray) {
   EXPECT_LT(found_needles, looked_at / 50) << "much is drawn in vain";
 }
 
+/// One mesh of all the corners, in objects of these placements; a plane of 400 m besides.
+Scene scene_with(const std::vector<glm::vec3>& corners, const std::vector<glm::dmat4>& placements) {
+  Scene scene;
+  scene.materials = {testing::double_sided()};
+  add_mesh(scene, corners, 0);
+  add_mesh(scene, {{-200, 0, -200}, {200, 0, -200}, {200, 0, 200}}, 0);
+  for (const glm::dmat4& placement : placements) scene.objects.push_back({0, placement});
+  scene.objects.push_back({1, glm::dmat4(1.0)});
+  finish_scene(scene, "placed");
+  return scene;
+}
+
+std::vector<glm::vec3> triangles_of_25_cm(std::uint32_t count, float height_m) {
+  std::vector<glm::vec3> corners;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const glm::vec3 at(0.5f * static_cast<float>(i % 64), 0.0f, 0.5f * static_cast<float>(i / 64));
+    corners.insert(corners.end(), {at, at + glm::vec3(0.25f, 0, 0), at + glm::vec3(0.125f, 0, height_m)});
+  }
+  return corners;
+}
+
+TEST(NeedleIndexTest, KeepsAsManyAsItMayOfThoseThatAreThinnest) {
+  std::vector<glm::vec3> corners = triangles_of_25_cm(100, 0.0f);
+  for (std::size_t i = 0; i < 30; ++i) corners[3 * i + 2].z += 1e-5f;  // not quite on the line
+  const Scene scene = scene_with(corners, {glm::dmat4(1.0)});
+  EXPECT_EQ(NeedleIndex(scene).triangles().size(), 100u);
+  const NeedleIndex few(scene, 70);
+  ASSERT_EQ(few.triangles().size(), 70u);
+  for (const raster::MeshTriangle& triangle : few.triangles()) EXPECT_GE(triangle.first_index, 90u);
+  EXPECT_EQ(NeedleIndex(scene, 20).triangles().size(), 20u);
+}
+
+TEST(NeedleIndexTest, HoldsNothingThatIsShrunkToAPoint) {
+  const Scene scene =
+      scene_with(triangles_of_25_cm(500, 0.25f), {glm::scale(glm::dmat4(1.0), glm::dvec3(0.0))});
+  EXPECT_TRUE(NeedleIndex(scene).triangles().empty());
+}
+
+TEST(NeedleIndexTest, HoldsNoSmallTrianglesOfAVastScene) {
+  Scene scene = scene_with(triangles_of_25_cm(500, 0.2f), {glm::dmat4(1.0)});
+  scene.objects.push_back({1, glm::scale(glm::dmat4(1.0), glm::dvec3(1e4))});
+  finish_scene(scene, "sky");
+  EXPECT_TRUE(NeedleIndex(scene).triangles().empty());
+}
+
+TEST(NeedleIndexTest, HoldsWhatAPlacementSqueezesOntoALine) {
+  glm::dmat4 sheared(1.0);
+  for (const double left : {0.0, 1e-9}) {
+    sheared[2] = glm::dvec4(1.0, 0.0, left, 0.0);  // columns as long as ever
+    const Scene scene = scene_with({{0, 0, 0}, {1, 0, 0}, {0.5f, 0, 0.25f}}, {sheared, glm::dmat4(1.0)});
+    EXPECT_EQ(NeedleIndex(scene).triangles().size(), 1u) << left;
+  }
+}
+
+TEST(NeedleIndexTest, FindsNoMoreWhereAnotherIsFarAway) {
+  std::mt19937 random(7);
+  Scene scene = many_needles(random);
+  NeedleIndex index(scene);
+  constexpr ImageSize size{512, 384};
+  const Eye eye = eye_of(Pose{{0, 0, 3}, {}}, size);
+  const std::size_t near = find(index, scene, eye, size).size();
+  const ObjectId parked{17};
+  const glm::dmat4 far_away = glm::translate(glm::dmat4(1.0), glm::dvec3(1e6, 0, 0));
+  index.move({&parked, 1}, {&far_away, 1});
+  EXPECT_LE(find(index, scene, eye, size).size(), near + 32);  // its group's
+}
+
 }  // namespace
 }  // namespace sightline

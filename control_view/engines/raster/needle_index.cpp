@@ -1,9 +1,11 @@
 #include "control_view/engines/raster/needle_index.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include <glm/geometric.hpp>
 
@@ -16,32 +18,53 @@ namespace {
 /// How thin a needle is beside the scene, whose diagonal this is a part of: single precision leaves a vertex
 /// as much in a view of the whole scene, in pixels of an image some hundred to some thousand high.
 constexpr double k_thinness = 1e-6;
-/// Of a scene with more, the thinnest alone are kept.
-constexpr std::uint64_t k_most_needles = 1u << 18;
+/// And beside its own longest edge: small triangles of a vast scene are none.
+constexpr double k_slenderness = 1.0 / 64.0;
 
-/// Whether the triangle may be as thin as `altitude`; errs towards true.
-bool may_be_thin(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, float altitude) {
+/// By how much a placement changes lengths: bounds, and close ones only where it changes all alike.
+struct Scales {
+  double least = 0.0, most = 0.0;
+  bool alike = false;
+};
+
+Scales scales_of(const glm::dmat4& placement) {
+  const glm::dmat3 m(placement);
+  const glm::dvec3 square(glm::dot(m[0], m[0]), glm::dot(m[1], m[1]), glm::dot(m[2], m[2]));
+  const double least = std::min({square.x, square.y, square.z}),
+               most = std::max({square.x, square.y, square.z});
+  constexpr double k_alike = 1e-3;
+  const double slant = std::max(
+      {std::abs(glm::dot(m[0], m[1])), std::abs(glm::dot(m[1], m[2])), std::abs(glm::dot(m[2], m[0]))});
+  if (most - least <= k_alike * most && slant <= k_alike * most) {
+    return {(1.0 - 3.0 * k_alike) * std::sqrt(least), (1.0 + 3.0 * k_alike) * std::sqrt(most), true};
+  }
+  // The determinant is the product of the three singular values, and none is above the Frobenius norm.
+  const double sum = square.x + square.y + square.z;
+  return {std::abs(glm::determinant(m)) / sum, std::sqrt(sum), false};
+}
+
+/// Whether the triangle may be as thin as `altitude` and as slender as `slenderness`; errs towards true.
+bool may_be_thin(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, float altitude,
+                 float slenderness) {
   const glm::vec3 ab = b - a, ac = c - a, bc = c - b, normal = glm::cross(ab, ac);
   const float longest = std::max({glm::dot(ab, ab), glm::dot(ac, ac), glm::dot(bc, bc)});
   constexpr float k_rounding = 1e-6f;  // of the normal, beside the square of the longest edge
   // Twice the sum of two squares is more than the square of the sum.
-  const float limit = altitude * altitude + k_rounding * k_rounding * longest;
+  const float limit =
+      std::min(altitude * altitude, slenderness * slenderness * longest) + k_rounding * k_rounding * longest;
   return !(glm::dot(normal, normal) > 2.0f * limit * longest);
 }
 
-/// The distance of the corner beside the longest edge from that edge.
-double altitude_of(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
-  const glm::dvec3 ab = glm::dvec3(b) - glm::dvec3(a), ac = glm::dvec3(c) - glm::dvec3(a);
-  const glm::dvec3 normal = glm::cross(ab, ac), bc = ac - ab;
-  const double longest = std::max({glm::dot(ab, ab), glm::dot(ac, ac), glm::dot(bc, bc)});
-  return longest > 0.0 ? std::sqrt(glm::dot(normal, normal) / longest) : 0.0;
-}
+/// The longest edge, and the distance of the corner beside it from it.
+struct Shape {
+  double longest = 0.0, altitude = 0.0;
+};
 
-/// By how much a placement shrinks lengths at most.
-double least_scale_of(const glm::dmat4& placement) {
-  return std::sqrt(std::min({glm::dot(glm::dvec3(placement[0]), glm::dvec3(placement[0])),
-                             glm::dot(glm::dvec3(placement[1]), glm::dvec3(placement[1])),
-                             glm::dot(glm::dvec3(placement[2]), glm::dvec3(placement[2]))}));
+Shape shape_of(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+  const glm::dvec3 ab = b - a, ac = c - a, bc = c - b, normal = glm::cross(ab, ac);
+  const double longest = std::max({glm::dot(ab, ab), glm::dot(ac, ac), glm::dot(bc, bc)});
+  if (!(longest > 0.0)) return {};
+  return {std::sqrt(longest), std::sqrt(glm::dot(normal, normal) / longest)};
 }
 
 double diagonal_of(const Scene& scene) {
@@ -52,30 +75,26 @@ double diagonal_of(const Scene& scene) {
   return box.empty() ? 0.0 : glm::length(glm::dvec3(box.extent()));
 }
 
-/// How far single precision may be off: clip coordinates by the rounding of their terms.
-NeedleView needle_view(const RasterView& view, const RasterRegion& part, const Aabb& all_needles) {
+/// How far single precision may be off in a box: clip coordinates by the rounding of their terms.
+void set_noise(const Aabb& box, NeedleView& look) {
   constexpr float k_epsilon = std::numeric_limits<float>::epsilon();
-  NeedleView look;
-  look.image = view;
-  look.part = part;
+  look.noise_w = 0.0f;
+  const glm::vec3 farthest = glm::max(glm::abs(box.min), glm::abs(box.max));
   for (const int row : {0, 1, 3}) {
-    float size = std::abs(view.clip_from_scene[3][row]);
-    for (int axis = 0; axis < 3; ++axis) {
-      size += std::abs(view.clip_from_scene[axis][row]) *
-              std::max(std::abs(all_needles.min[axis]), std::abs(all_needles.max[axis]));
-    }
+    const float(&m)[4][4] = look.image.clip_from_scene;
+    const float size = std::abs(m[3][row]) + std::abs(m[0][row]) * farthest.x +
+                       std::abs(m[1][row]) * farthest.y + std::abs(m[2][row]) * farthest.z;
     look.noise_w = std::max(look.noise_w, k_epsilon * size);
   }
-  const auto half = 0.5f * static_cast<float>(std::max(view.image_width, view.image_height));
+  const auto half = 0.5f * static_cast<float>(std::max(look.image.image_width, look.image.image_height));
   look.noise_px = 2.0f * k_epsilon * half;
   look.noise_px_w = look.noise_w * half;
-  return look;
 }
 
 }  // namespace
 
-NeedleIndex::NeedleIndex(const Scene& scene) {
-  collect(scene);
+NeedleIndex::NeedleIndex(const Scene& scene, std::size_t most_needles) {
+  collect(scene, most_needles);
   if (needles_.empty()) return;
 
   std::vector<glm::vec3> centers;
@@ -111,65 +130,131 @@ NeedleIndex::NeedleIndex(const Scene& scene) {
   });
 }
 
-void NeedleIndex::collect(const Scene& scene) {
-  struct Thin {
-    MeshTriangle triangle;
-    double altitude;
-    std::uint32_t number;  ///< among triangles_, once it is there
-  };
-  constexpr std::uint32_t k_none = 0xffffffffu;
-  std::vector<double> least_scale(scene.meshes.size(), std::numeric_limits<double>::infinity());
-  std::vector<double> scale_of_object;
-  scale_of_object.reserve(scene.object_count());
-  for (const Object& object : scene.objects) {
-    scale_of_object.push_back(least_scale_of(object.scene_from_object));
-    least_scale[object.mesh] = std::min(least_scale[object.mesh], scale_of_object.back());
+namespace {
+
+/// A triangle that may be a needle of some object that has its mesh.
+struct ThinTriangle {
+  MeshTriangle triangle;
+  float altitude;  ///< mesh frame
+  bool slender;    ///< mesh frame
+};
+
+struct FoundNeedle {
+  float altitude;  ///< scene frame
+  std::uint32_t object;
+  MeshTriangle triangle;
+};
+
+/// The thinnest of those that are added, so many at most.
+class Thinnest {
+ public:
+  explicit Thinnest(std::size_t most) : most_(most) {}
+  void add(const FoundNeedle& needle) {
+    if (!(needle.altitude < limit_)) return;
+    found_.push_back(needle);
+    if (found_.size() >= 2 * most_ + 1) shorten();
   }
+  [[nodiscard]] std::vector<FoundNeedle> take() {
+    if (found_.size() > most_) shorten();
+    return std::move(found_);
+  }
+
+ private:
+  void shorten() {
+    const auto last = found_.begin() + static_cast<std::ptrdiff_t>(most_);
+    std::nth_element(found_.begin(), last, found_.end(),
+                     [](const FoundNeedle& a, const FoundNeedle& b) { return a.altitude < b.altitude; });
+    limit_ = last->altitude;
+    found_.erase(last, found_.end());
+  }
+
+  std::size_t most_;
+  float limit_ = std::numeric_limits<float>::infinity();
+  std::vector<FoundNeedle> found_;
+};
+
+std::array<glm::vec3, 3> corners_of(const Scene& scene, const MeshTriangle& triangle) {
+  const std::uint32_t* const index = scene.indices.data() + triangle.first_index;
+  return {scene.positions[index[0]], scene.positions[index[1]], scene.positions[index[2]]};
+}
+
+/// Altitude and slenderness in the mesh frame.
+std::vector<ThinTriangle> thin_triangles(const Scene& scene, const Mesh& mesh, double altitude,
+                                         double slenderness) {
+  std::vector<ThinTriangle> thin;
+  const auto most = static_cast<float>(altitude), most_slender = static_cast<float>(slenderness);
+  for (std::uint32_t p = mesh.first_primitive; p < mesh.first_primitive + mesh.primitive_count; ++p) {
+    const Primitive& primitive = scene.primitives[p];
+    for (std::uint32_t i = 0; i + 2 < primitive.index_count; i += 3) {
+      const MeshTriangle triangle{p, primitive.first_index + i};
+      const auto [a, b, c] = corners_of(scene, triangle);
+      if (a == b || b == c || c == a) continue;  // without area also when snapped
+      if (!may_be_thin(a, b, c, most, most_slender)) continue;
+      const Shape shape = shape_of(a, b, c);
+      if (!(shape.altitude <= altitude && shape.altitude <= slenderness * shape.longest)) continue;
+      const bool is_slender = shape.altitude <= k_slenderness * shape.longest;
+      thin.push_back({triangle, static_cast<float>(shape.altitude), is_slender});
+    }
+  }
+  return thin;
+}
+
+}  // namespace
+
+void NeedleIndex::collect(const Scene& scene, std::size_t most_needles) {
   const double thin = k_thinness * diagonal_of(scene);
-  std::vector<std::vector<Thin>> of_mesh(scene.meshes.size());
+  std::vector<std::vector<std::uint32_t>> objects_of_mesh(scene.meshes.size());
+  for (std::uint32_t i = 0; i < scene.object_count(); ++i)
+    objects_of_mesh[scene.objects[i].mesh].push_back(i);
+
+  Thinnest thinnest(most_needles);
   for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
-    const Mesh& mesh = scene.meshes[m];
-    const auto thin_in_mesh = static_cast<float>(thin / least_scale[m]);
-    for (std::uint32_t p = mesh.first_primitive; p < mesh.first_primitive + mesh.primitive_count; ++p) {
-      const Primitive& primitive = scene.primitives[p];
-      for (std::uint32_t i = 0; i + 2 < primitive.index_count; i += 3) {
-        const std::uint32_t* const index = scene.indices.data() + primitive.first_index + i;
-        const glm::vec3 &a = scene.positions[index[0]], &b = scene.positions[index[1]],
-                        &c = scene.positions[index[2]];
-        if (a == b || b == c || c == a) continue;  // without area also when snapped
-        if (!may_be_thin(a, b, c, thin_in_mesh)) continue;
-        const double altitude = altitude_of(a, b, c);
-        if (!(altitude * least_scale[m] <= thin)) continue;
-        of_mesh[m].push_back({{p, primitive.first_index + i}, altitude, k_none});
+    // Whatever one of the objects may have as a needle: then each is held against its own placement.
+    double altitude = 0.0, slenderness = 0.0;
+    for (const std::uint32_t object : objects_of_mesh[m]) {
+      const Scales scales = scales_of(scene.objects[object].scene_from_object);
+      if (!(scales.most > 0.0)) continue;  // a point
+      altitude = std::max(altitude, thin / scales.least);
+      slenderness = std::max(slenderness, k_slenderness * scales.most / scales.least);
+    }
+    if (!(slenderness > 0.0)) continue;
+    const std::vector<ThinTriangle> candidates =
+        thin_triangles(scene, scene.meshes[m], altitude, slenderness);
+    if (candidates.empty()) continue;
+    for (const std::uint32_t object : objects_of_mesh[m]) {
+      const glm::dmat4& placement = scene.objects[object].scene_from_object;
+      const Scales scales = scales_of(placement);
+      for (const ThinTriangle& candidate : candidates) {
+        if (scales.alike) {
+          const double placed = candidate.altitude * scales.least;
+          if (candidate.slender && placed <= thin)
+            thinnest.add({static_cast<float>(placed), object, candidate.triangle});
+          continue;
+        }
+        const auto corners = corners_of(scene, candidate.triangle);
+        const auto at = [&](int i) { return glm::dvec3(placement * glm::dvec4(corners[i], 1.0)); };
+        const Shape shape = shape_of(at(0), at(1), at(2));
+        if (shape.longest > 0.0 && shape.altitude <= thin && shape.altitude <= k_slenderness * shape.longest)
+          thinnest.add({static_cast<float>(shape.altitude), object, candidate.triangle});
       }
     }
   }
 
-  const auto each = [&](double limit, auto&& visit) {
-    for (std::uint32_t object = 0; object < scene.object_count(); ++object) {
-      for (Thin& thin_one : of_mesh[scene.objects[object].mesh]) {
-        if (thin_one.altitude * scale_of_object[object] <= limit) visit(object, thin_one);
-      }
-    }
+  const std::vector<FoundNeedle> found = thinnest.take();
+  const auto key_of = [](const MeshTriangle& triangle) {
+    return std::pair(triangle.primitive, triangle.first_index);
   };
-  for (double limit = thin;; limit = limit > 1e-3 * thin ? 0.25 * limit : 0.0) {
-    std::uint64_t count = 0;
-    each(limit, [&count](std::uint32_t, const Thin&) { ++count; });
-    if (count <= k_most_needles) {
-      needles_.reserve(count);
-      each(limit, [&](std::uint32_t object, Thin& thin_one) {
-        if (thin_one.number == k_none) {
-          thin_one.number = static_cast<std::uint32_t>(triangles_.size());
-          triangles_.push_back(thin_one.triangle);
-          for (std::uint32_t corner = 0; corner < 3; ++corner) {
-            corners_.push_back(scene.positions[scene.indices[thin_one.triangle.first_index + corner]]);
-          }
-        }
-        needles_.push_back({object, thin_one.number});
-      });
-      return;
-    }
-    if (limit == 0.0) return;
+  for (const FoundNeedle& needle : found) triangles_.push_back(needle.triangle);
+  std::ranges::sort(triangles_, {}, key_of);
+  const auto same = std::ranges::unique(triangles_, {}, key_of);
+  triangles_.erase(same.begin(), same.end());
+  for (const MeshTriangle& triangle : triangles_) {
+    for (const glm::vec3& corner : corners_of(scene, triangle)) corners_.push_back(corner);
+  }
+  needles_.reserve(found.size());
+  for (const FoundNeedle& needle : found) {
+    const auto at = std::ranges::lower_bound(triangles_, key_of(needle.triangle), {}, key_of);
+    needles_.push_back({needle.object, static_cast<std::uint32_t>(at - triangles_.begin())});
   }
 }
 
@@ -232,7 +317,9 @@ void NeedleIndex::find(const KernelFunctions& kernel, const RasterView& view, co
                        std::vector<Needle>& found) {
   found.clear();
   if (needles_.empty()) return;
-  const NeedleView look = needle_view(view, part, groups_.nodes().front().box);
+  NeedleView look;
+  look.image = view;
+  look.part = part;
   glm::dmat4 clip_from_scene;
   for (int column = 0; column < 4; ++column) {
     for (int row = 0; row < 4; ++row) clip_from_scene[column][row] = view.clip_from_scene[column][row];
@@ -254,6 +341,7 @@ void NeedleIndex::find(const KernelFunctions& kernel, const RasterView& view, co
       corners.y[corner] = of_corner + k_group;
       corners.z[corner] = of_corner + 2 * k_group;
     }
+    set_noise(groups_.bounds_of(in_view_[i]), look);
     for (unsigned bits = kernel.find_needles(look, corners); bits != 0; bits &= bits - 1) {
       const auto slot = group * k_group + static_cast<std::uint32_t>(__builtin_ctz(bits));
       if (may_show_astray(slot, look)) found.push_back(needles_[slot]);

@@ -23,9 +23,14 @@ namespace sightline::raster {
 /// what it is told.
 class NeedleIndex {
  public:
-  explicit NeedleIndex(const Scene& scene);
+  /// Memory and time bound this; a scene that has more may show a pixel too few now and then.
+  static constexpr std::size_t k_most_needles = 1u << 20;
 
-  /// Every triangle that some object has as a needle, each once. None where there are too many by far.
+  /// Of more than `most_needles`, objects with the same mesh counted each, the thinnest are kept. Whether a
+  /// triangle is one is decided by where the scene has it: an object that is squeezed flat later brings none.
+  explicit NeedleIndex(const Scene& scene, std::size_t most_needles = k_most_needles);
+
+  /// Every triangle that some object has as a needle, each once.
   [[nodiscard]] std::span<const MeshTriangle> triangles() const noexcept { return triangles_; }
 
   /// Places objects elsewhere, scene frame.
@@ -41,7 +46,7 @@ class NeedleIndex {
   /// Needles that lie near each other, looked at together; the last group is filled up with repetitions.
   static constexpr std::uint32_t k_group = k_padding;
 
-  void collect(const Scene& scene);
+  void collect(const Scene& scene, std::size_t most_needles);
   void sort_into_groups(std::size_t first, std::size_t end, const std::vector<glm::vec3>& centers);
   [[nodiscard]] static std::size_t at(std::uint32_t slot, std::size_t corner, std::size_t axis) {
     return ((slot / k_group * 3 + corner) * 3 + axis) * k_group + slot % k_group;
