@@ -88,9 +88,18 @@ std::string SceneIntake::why_never(const SceneOffer& offer) const {
 }
 
 bool SceneIntake::has_room(const SceneOffer& offer, double now_s) {
-  std::uint64_t bytes = offer.byte_count;
-  for (const auto& [digest, upload] : uploads_) bytes += upload.offer.byte_count;
-  return scenes_.make_room(uploads_.size() + 1, bytes, limits_.scenes, limits_.all_bytes, now_s);
+  const auto fits = [&] {
+    std::uint64_t bytes = offer.byte_count;
+    for (const auto& [digest, upload] : uploads_) bytes += upload.offer.byte_count;
+    return scenes_.make_room(uploads_.size() + 1, bytes, limits_.scenes, limits_.all_bytes, now_s);
+  };
+  if (fits()) return true;
+  // Offers that nothing followed are no claim to a place.
+  const auto dropped = std::erase_if(uploads_, [&](const auto& entry) {
+    return entry.second.held.isEmpty() && !entry.second.is_busy() &&
+           now_s - entry.second.heard_s > k_patience_s;
+  });
+  return dropped > 0 && fits();
 }
 
 void SceneIntake::take(const PeerId& peer, const SceneChunkView& chunk, double now_s) {
@@ -112,10 +121,15 @@ void SceneIntake::take(const PeerId& peer, const SceneChunkView& chunk, double n
     return;
   }
   if (upload.held.contains(chunk.index)) return;
+  // Of somebody beyond those it remembers it believes nothing: nobody could be held to it.
+  const bool is_known = upload.peers.contains(peer) || upload.peers.size() < k_most_peers;
+  if (!is_known && digest_of(chunk.bytes) != upload.offer.chunk_digests[chunk.index]) {
+    tell(peer, wrong_chunk(upload.offer.scene_digest, chunk.index));
+    return;
+  }
   upload.heard_s = now_s;
   std::ranges::copy(chunk.bytes, upload.bytes.chunk(chunk.index).begin());
   upload.held.add(chunk.index);
-  const bool is_known = upload.peers.contains(peer) || upload.peers.size() < k_most_peers;
   upload.sent_by[chunk.index] = is_known ? &*upload.peers.insert(peer).first : nullptr;
   if (upload.is_whole()) {
     tell_all(upload, status_of(upload, false));
@@ -154,8 +168,7 @@ void SceneIntake::file(const CheckedChunks& checked, double now_s) {
     upload.given_to_check.remove(index);
     const PeerId* sender = upload.sent_by[index];
     if (sender == nullptr || !upload.liars.insert(*sender).second) continue;
-    tell(*sender, state_of(checked.scene_digest, SceneState::failed,
-                           "chunk " + std::to_string(index) + " has not the digest that the offer says"));
+    tell(*sender, wrong_chunk(checked.scene_digest, index));
   }
   if (!checked.wrong.empty()) {
     upload.heard_s = now_s;
@@ -189,6 +202,11 @@ SceneStatus SceneIntake::status_of(const Upload& upload, bool with_held) {
   status.chunks_held = static_cast<std::uint32_t>(upload.held.cardinality());
   if (with_held) status.held = bytes_of(upload.held);
   return status;
+}
+
+SceneStatus SceneIntake::wrong_chunk(const SceneDigest& digest, std::uint32_t index) {
+  return state_of(digest, SceneState::failed,
+                  "chunk " + std::to_string(index) + " has not the digest that the offer says");
 }
 
 SceneStatus SceneIntake::state_of(const SceneDigest& digest, SceneState state, std::string text) {

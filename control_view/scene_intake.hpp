@@ -39,6 +39,8 @@ class SceneIntake {
  public:
   /// An upload nobody sends to is forgotten after this long, seconds.
   static constexpr double k_idle_s = 60.0;
+  /// Where there is no room for another, an offer without a chunk after this long.
+  static constexpr double k_patience_s = 2.0;
   /// A status for every so many chunks.
   static constexpr std::uint32_t k_chunks_a_status = 16;
 
@@ -83,6 +85,7 @@ class SceneIntake {
   /// Beside the other scenes and uploads, once idle scenes have gone.
   [[nodiscard]] bool has_room(const SceneOffer& offer, double now_s);
   [[nodiscard]] static SceneStatus status_of(const Upload& upload, bool with_held);
+  [[nodiscard]] static SceneStatus wrong_chunk(const SceneDigest& digest, std::uint32_t index);
   [[nodiscard]] static SceneStatus state_of(const SceneDigest& digest, SceneState state,
                                             std::string text = {});
   void tell(const PeerId& peer, SceneStatus status);

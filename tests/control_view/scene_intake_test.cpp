@@ -207,6 +207,37 @@ TEST(SceneIntake, ChecksALonePeerWhenItIsDone) {
   EXPECT_EQ(daemon.last_told(k_honest).state, SceneState::ready);
 }
 
+TEST(SceneIntake, TakesOnlyWhatIsRightFromMorePeersThanItRemembers) {
+  Intake daemon;
+  const Parcel parcel(bulky_scene(25));
+  for (int ghost = 0; ghost < 64; ++ghost)
+    daemon.intake.offer("ghost " + std::to_string(ghost), parcel.offer, daemon.now_s);
+  for (std::uint32_t i = 0; i < parcel.chunk_count(); ++i) {
+    daemon.intake.take(k_liar, forged_chunk(parcel, i), daemon.now_s);
+    EXPECT_EQ(daemon.last_told(k_liar).state, SceneState::failed);
+    daemon.intake.take(k_honest, parcel.chunk(i), daemon.now_s);
+  }
+  daemon.settle();
+  daemon.intake.offer(k_honest, parcel.offer, daemon.now_s);
+  EXPECT_EQ(daemon.last_told(k_honest).state, SceneState::ready);
+}
+
+TEST(SceneIntake, GivesThePlacesOfEmptyOffersToOthers) {
+  IntakeLimits limits;
+  limits.scenes = 2;
+  Intake daemon(limits);
+  const Parcel one(bulky_scene(26)), two(bulky_scene(27)), wanted(bulky_scene(28)), last(bulky_scene(29));
+  for (const Parcel* squat : {&one, &two}) daemon.intake.offer(k_liar, squat->offer, daemon.now_s);
+  daemon.intake.take(k_liar, two.chunk(0), daemon.now_s);
+  daemon.intake.offer(k_honest, wanted.offer, daemon.now_s);
+  EXPECT_EQ(daemon.last_told(k_honest).state, SceneState::full);  // their chunks may be on their way
+  daemon.now_s += SceneIntake::k_patience_s + 0.1;
+  daemon.send(k_honest, wanted);
+  EXPECT_EQ(daemon.last_told(k_honest).state, SceneState::ready);
+  daemon.intake.offer(k_other, last.offer, daemon.now_s);
+  EXPECT_EQ(daemon.last_told(k_other).state, SceneState::full);  // one has a chunk, one is ready
+}
+
 // An honest client does what the statuses say; others forge chunks, two each. However they race, the scene
 // that comes about is the honest one's and nobody honest is blamed.
 TEST(SceneIntake, EndsWithTheRightSceneHoweverLiarsRace) {
