@@ -63,7 +63,7 @@ ClientVerdict verdict_of(ObjectId id, const Aabb& world_bounds, std::span<const 
     return may_intersect(frustum_of(eye.clip_from_world()), world_bounds);
   });
   verdict.fallback = decision.fallback;
-  verdict.in_set = decision.fallback == Fallback::none && decision.visible.contains(id);
+  verdict.in_set = decision.fallback == Fallback::none && decision.is_seen(id);
   verdict.drawn = verdict.in_frustum && decision.may_be_visible(id, world_bounds);
   return verdict;
 }

@@ -59,7 +59,7 @@ class FrameDecision {
     if (field_covered && moved.draws_nothing()) return false;
     return moved.must_draw(id, world_bounds) || may_be_untested(world_bounds);
   }
-  /// Whether the object is in `visible`.
+  /// Whether the object is in `visible` or its bits.
   [[nodiscard]] bool is_seen(ObjectId id) const {
     const std::size_t word = index_of(id) / 64;
     if (word < visible_bits.size()) return (visible_bits[word] >> (index_of(id) % 64) & 1) != 0;
@@ -69,7 +69,9 @@ class FrameDecision {
   [[nodiscard]] bool may_be_untested(const Aabb& world_bounds) const;
 
   Fallback fallback = Fallback::no_set;
-  VisibleSet visible;                       ///< S_last OR S_next, with every later set at hand: see all_after
+  /// S_last OR S_next, with every later set at hand: see all_after. Of decide(); empty in a ViewFrame, which
+  /// has the bits alone.
+  VisibleSet visible;
   std::vector<std::uint64_t> visible_bits;  ///< the same, a bit an object as far as its last; or empty
   std::size_t visible_count = 0;            ///< bits that are set
   bool field_covered = false;       ///< the whole view frustum was tested; world_bounds is then not looked at

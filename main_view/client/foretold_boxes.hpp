@@ -40,6 +40,7 @@ class ForetoldBoxes {
   }
 
   static constexpr std::size_t k_columns = 8;
+  static_assert(k_columns <= ForetoldRows::k_most);
 
   /// The columns that are about one time, in no order.
   struct Covering {

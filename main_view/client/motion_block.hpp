@@ -46,9 +46,10 @@ struct alignas(64) MotionStage {
 
 /// The boxes that were foretold for now, of one block.
 struct ForetoldRows {
+  static constexpr std::size_t k_most = 8;
   std::size_t count = 0;
-  const BoxRows* boxes[8] = {};
-  std::int32_t numbers[8] = {};
+  const BoxRows* boxes[k_most] = {};
+  std::int32_t numbers[k_most] = {};
 };
 
 /// The moment of a step, for all blocks.

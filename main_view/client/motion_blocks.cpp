@@ -19,11 +19,13 @@ float rounded_up(double value) noexcept {
 }  // namespace
 
 std::span<const MotionKernel> motion_kernels() {
-  static const std::array<MotionKernel, 2> k_kernels{{
-      {"avx2", __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("fma") != 0,
-       &avx2::k_motion_functions},
-      {"plain", true, &plain::k_motion_functions},
-  }};
+  static const auto k_kernels = std::to_array<MotionKernel>({
+#if defined(__x86_64__)
+    {"avx2", __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("fma") != 0,
+     &avx2::k_motion_functions},
+#endif
+        {"plain", true, &plain::k_motion_functions},
+  });
   return k_kernels;
 }
 

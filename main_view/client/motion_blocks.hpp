@@ -75,7 +75,7 @@ class MotionBlocks {
   std::vector<Aabb> object_bounds_;
 };
 
-/// The steps of one moment, gathered by blocks. The blocks must not grow meanwhile.
+/// The steps of one moment, gathered by blocks. Blocks may be added meanwhile.
 class MotionSteps {
  public:
   MotionSteps(MotionBlocks& blocks, const StepTimes& times, const ForetoldBoxes::Covering& covering)
