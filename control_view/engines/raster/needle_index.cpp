@@ -120,6 +120,7 @@ NeedleIndex::NeedleIndex(const Scene& scene, std::size_t most_needles) {
     place(slot, glm::mat4(scene.objects[needles_[slot].object].scene_from_object));
   }
   std::vector<Aabb> boxes;
+  boxes.reserve(needles_.size() / k_group);
   for (std::uint32_t group = 0; group < needles_.size() / k_group; ++group) boxes.push_back(box_of(group));
   groups_ = ObjectHierarchy(boxes);
 
@@ -246,8 +247,10 @@ void NeedleIndex::collect(const Scene& scene, std::size_t most_needles) {
   };
   for (const FoundNeedle& needle : found) triangles_.push_back(needle.triangle);
   std::ranges::sort(triangles_, {}, key_of);
-  const auto same = std::ranges::unique(triangles_, {}, key_of);
-  triangles_.erase(same.begin(), same.end());
+  triangles_.erase(
+      std::unique(triangles_.begin(), triangles_.end(),
+                  [&](const MeshTriangle& a, const MeshTriangle& b) { return key_of(a) == key_of(b); }),
+      triangles_.end());
   for (const MeshTriangle& triangle : triangles_) {
     for (const glm::vec3& corner : corners_of(scene, triangle)) corners_.push_back(corner);
   }
@@ -309,6 +312,7 @@ void NeedleIndex::move(std::span<const ObjectId> ids, std::span<const glm::dmat4
   std::sort(groups.begin(), groups.end());
   groups.erase(std::unique(groups.begin(), groups.end()), groups.end());
   std::vector<Aabb> boxes;
+  boxes.reserve(groups.size());
   for (const ObjectId group : groups) boxes.push_back(box_of(index_of(group)));
   groups_.move(groups, boxes);
 }
