@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "common/widest_axis.hpp"
+
 namespace sightline {
 namespace {
 
@@ -99,9 +101,7 @@ std::uint32_t ObjectHierarchyBuilder::split(std::span<Item> items, std::uint32_t
   Aabb centers;
   for (const Item& item : items) centers.add(item.center);
   const glm::vec3 extent = centers.extent();
-  int axis = 0;
-  if (extent.y > extent[axis]) axis = 1;
-  if (extent.z > extent[axis]) axis = 2;
+  const int axis = widest_axis(extent);
   const float scale = static_cast<float>(k_bin_count) / extent[axis];
   const auto by_center = [axis](const Item& a, const Item& b) { return a.center[axis] < b.center[axis]; };
   const auto halve = [&] {

@@ -2,16 +2,13 @@
 
 #include <array>
 
+#include "common/widest_axis.hpp"
+
 namespace sightline {
 namespace {
 
 /// A piece that covers no more than this, pixels, is not halved: its rectangle is close enough.
 constexpr std::uint32_t k_small_side = 4;
-
-int longest_axis(const glm::vec3& extent) {
-  if (extent.x >= extent.y && extent.x >= extent.z) return 0;
-  return extent.y >= extent.z ? 1 : 2;
-}
 
 }  // namespace
 
@@ -27,7 +24,7 @@ bool may_show_finely(const BoxProjector& projector, const DepthHierarchy& depth,
     if (!screen || !depth.may_show(*screen)) continue;
     const bool small =
         screen->right - screen->left <= k_small_side && screen->top - screen->bottom <= k_small_side;
-    const int axis = longest_axis(projector.lengths_of(piece));
+    const int axis = widest_axis(projector.lengths_of(piece));
     const float middle = 0.5f * (piece.min[axis] + piece.max[axis]);
     const bool divisible = piece.min[axis] < middle && middle < piece.max[axis];
     if (small || !divisible || waiting + 2 > stack.size()) return true;

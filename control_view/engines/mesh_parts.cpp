@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "common/widest_axis.hpp"
+
 namespace sightline {
 namespace {
 
@@ -15,12 +17,10 @@ void append_triangles(const Scene& scene, const Primitive& primitive, std::vecto
   }
 }
 
-int widest_axis(std::span<const Aabb> boxes) {
+int widest_axis_of_centers(std::span<const Aabb> boxes) {
   Aabb centers;
   for (const Aabb& box : boxes) centers.add(box.center());
-  const glm::vec3 extent = centers.extent();
-  if (extent.x >= extent.y && extent.x >= extent.z) return 0;
-  return extent.y >= extent.z ? 1 : 2;
+  return widest_axis(centers.extent());
 }
 
 }  // namespace
@@ -52,7 +52,7 @@ void MeshParts::add_parts(std::span<Aabb> triangles) {
     boxes_.push_back(part);
     return;
   }
-  const int axis = widest_axis(triangles);
+  const int axis = widest_axis_of_centers(triangles);
   const auto middle = triangles.begin() + static_cast<std::ptrdiff_t>(triangles.size() / 2);
   std::nth_element(triangles.begin(), middle, triangles.end(), [axis](const Aabb& a, const Aabb& b) {
     return a.min[axis] + a.max[axis] < b.min[axis] + b.max[axis];

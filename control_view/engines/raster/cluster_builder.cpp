@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "common/widest_axis.hpp"
+
 namespace sightline::raster {
 namespace {
 
@@ -42,8 +44,7 @@ void ClusterBuilder::split(std::size_t first, std::size_t end, std::uint32_t par
   if (parts == 1) return emit(first, end);
   Aabb centers;
   for (std::size_t i = first; i < end; ++i) centers.add(triangles_[i].center);
-  const glm::vec3 extent = centers.extent();
-  const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
+  const int axis = widest_axis(centers.extent());
   const std::uint32_t left_parts = parts / 2;
   const std::size_t middle = first + (end - first) * left_parts / parts;
   const auto begin = triangles_.begin();
