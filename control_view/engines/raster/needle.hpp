@@ -1,5 +1,6 @@
 #pragma once
 
+#include <compare>
 #include <cstdint>
 
 namespace sightline::raster {
@@ -8,6 +9,8 @@ namespace sightline::raster {
 struct MeshTriangle {
   std::uint32_t primitive = 0;
   std::uint32_t first_index = 0;
+
+  auto operator<=>(const MeshTriangle&) const = default;
 };
 
 /// A needle of an object: `triangle` of NeedleIndex::triangles().
@@ -15,7 +18,7 @@ struct Needle {
   std::uint32_t object = 0;
   std::uint32_t triangle = 0;
 
-  bool operator==(const Needle&) const = default;
+  auto operator<=>(const Needle&) const = default;
 };
 
 }  // namespace sightline::raster

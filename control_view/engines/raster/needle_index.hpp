@@ -46,7 +46,6 @@ class NeedleIndex {
   /// Needles that lie near each other, looked at together; the last group is filled up with repetitions.
   static constexpr std::uint32_t k_group = k_padding;
 
-  void collect(const Scene& scene, std::size_t most_needles);
   void sort_into_groups(std::size_t first, std::size_t end, const std::vector<glm::vec3>& centers);
   [[nodiscard]] static std::size_t at(std::uint32_t slot, std::size_t corner, std::size_t axis) {
     return ((slot / k_group * 3 + corner) * 3 + axis) * k_group + slot % k_group;
